@@ -175,14 +175,12 @@ def _examine(
 
 
 def _answer(examined: Sequence[Examined], scaled: Sequence[GroundMotion], read: Scaled) -> RecordAnswer:
-
-    first, measures = examined[0], examined[0].measures
-    sentence = f"{first.label}: PGA {measures.pga_g:.3g} g, PGV {measures.pgv:.3g} m/s."
+    first = examined[0]
     with_spectra = first.spectrum is not None
     return RecordAnswer(
         "record",
-        measures,
-        View(lambda: data(first), [*parts(examined, 100), sentence]),
+        first.measures,
+        View(lambda: data(first), [*parts(examined, 100)]),
         partial(_columns, scaled[0]),
         drawn(SPECTRA, _spectra(examined)) if with_spectra else partial(_figure, scaled[0], first, read),
         tables={"spectrum": partial(spectra_table, _spectra(examined))} if with_spectra else {},

@@ -14,9 +14,10 @@ import numpy as np
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulse_fit import CRITERIA, PulseFit
 from rocking_cli.short_repr import short_repr
+from rocking_cli.text import in_short
 from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
 from rocking_cli.views.response import fit_data, pulse_data
-from rocking_cli.views.view import ABSENT, Table, View, number, processing_data
+from rocking_cli.views.view import ABSENT, ASIDE, Aside, Table, View, number, processing_data
 
 if TYPE_CHECKING:
     from rocking_cli.excitation.base import Doubt, GroundMotion
@@ -30,6 +31,8 @@ MAX_NAME_LINE = 14  # characters of a line of a record's name above its column, 
 MAX_HEADING_LINE = 9  # characters of a line of a heading above a quantity
 LABELS_WIDTH = 26  # characters that labels and units take in a table
 COLUMN_GAP = 3  # blanks between columns
+IN_WORDS = {"dt", "duration", "PGA", "PGV"}
+"""Headings of the quantities of a single record that a sentence has."""
 
 
 @short_repr
@@ -65,15 +68,15 @@ def _folded(name: str, width: int = MAX_NAME_LINE) -> str:
 AS_READ: tuple[Column[Examined], ...] = (
     Column("file", of("file")),
     Column("name", of("motion.name")),
-    Column("format", of("motion.format"), head="format", form=_folded),
+    Column("format", of("motion.format"), head="format", form=_folded, rank=ASIDE),
     Column("channel", _channel, head="channel"),
-    Column("unit", of("motion.source_unit"), head="unit in the file"),
+    Column("unit", of("motion.source_unit"), head="unit in the file", rank=ASIDE),
     Column("origin", lambda record: record.motion.origin._asdict()),
     only_shown("earthquake", lambda record: record.motion.origin.event or None, _folded),
     only_shown("station", lambda record: record.motion.origin.station or None, _folded),
     only_shown("magnitude", of("motion.origin.magnitude"), number),
     only_shown("distance", of("motion.origin.distance"), unit="km"),
-    Column("npts", of("motion.npts"), head="points"),
+    Column("npts", of("motion.npts"), head="points", rank=ASIDE),
     Column("dt", of("motion.dt"), "s", "dt", number),
     Column("duration", of("motion.duration"), "s", "duration", number),
     only_shown("processed", lambda record: "\n".join(record.motion.processing) or None),
@@ -86,9 +89,9 @@ MEASURED: tuple[Column[Examined], ...] = (
     Column("pgd", of("measures.pgd"), "m", "PGD"),
     Column("arias_intensity", of("measures.arias"), "m/s", "Arias intensity"),
     Column("significant_duration", of("measures.significant_duration"), "s", "5-95 % duration"),
-    Column("t_5", of("measures.t_5"), "s", "5 % of Arias at"),
-    Column("t_95", of("measures.t_95"), "s", "95 % of Arias at"),
-    Column("mean_acceleration", of("measures.mean"), "g", "mean acceleration", rounded(2)),
+    Column("t_5", of("measures.t_5"), "s", "5 % of Arias at", rank=ASIDE),
+    Column("t_95", of("measures.t_95"), "s", "95 % of Arias at", rank=ASIDE),
+    Column("mean_acceleration", of("measures.mean"), "g", "mean acceleration", rounded(2), rank=ASIDE),
     Column("final_velocity", of("measures.final_velocity"), "m/s"),
     Column("final_displacement", of("measures.final_displacement"), "m"),
     Column("p_dt", of("p_dt"), head="p dt", form=rounded(2)),
@@ -111,10 +114,13 @@ def data(record: Examined) -> dict[str, Any]:
 def parts(records: Sequence[Examined], width: int | None) -> Iterator[Table | str]:
     """Yield tables with a column for each record, as many as the width requires, then the pulses of each record.
 
+    First comes a sentence on how strong the records are, and whether they have defects.
+
     If a table has room for one record only, the name is its title. Without a width, as in a pipe, several records are
     one table with a row for each.
     """
     columns = _columns(records)
+    yield in_words(records)
     if width is None and len(records) > 1:
         yield _long(records, columns)
     else:
@@ -123,6 +129,18 @@ def parts(records: Sequence[Examined], width: int | None) -> Iterator[Table | st
         if record.pulses:
             yield from _pulses(record.label, record.pulses)
     yield from (peaks(each.label, each.spectrum) for each in records if each.spectrum is not None)
+
+
+def in_words(records: Sequence[Examined]) -> str:
+    """Return in words how strong a record is, or how many records there are, and which have possible defects."""
+    first, doubtful = records[0], [each.label for each in records if each.doubts]
+    least, most = (f"{end(each.measures.pga_g for each in records):.3g}" for end in (min, max))
+    words = f"{len(records)} records, PGA {f'{least} to ' * (least != most)}{most} g"
+    if len(records) == 1:
+        strong = f"PGA {first.measures.pga_g:.3g} g, PGV {first.measures.pgv:.3g} m/s"
+        words = f"{first.label}: {strong}; {first.motion.duration:.4g} s at dt = {first.motion.dt:.4g} s"
+    whose = f" of {in_short(doubtful)}" if len(records) > 1 else ""
+    return f"{words}. " + (f"Possible defects{whose}: see the warnings." if doubtful else "No defects found.")
 
 
 def _side_by_side(
@@ -163,6 +181,8 @@ def _columns(records: Sequence[Examined]) -> list[Column[Examined]]:
         if column.head is not None
         and (column.head not in silent or any(column.cell(each) != silent[column.head] for each in records))
     ]
+    if len(records) == 1:  # the first sentence has their values
+        columns = [replace(each, rank=ASIDE) if each.head in IN_WORDS else each for each in columns]
     return columns + [only_shown(str(each), partial(_asked, each), unit=each.unit) for each in records[0].asked]
 
 
@@ -195,7 +215,7 @@ def _pulses(name: str, fits: Sequence[PulseFit]) -> Iterator[Table | str]:
     for criterion in CRITERIA:
         one = [fit for fit in fits if fit.criterion == criterion]
         yield table_across(f"{name}: pulses fitted in {criterion}", PULSES, [fit.pulse.name for fit in one], one)
-    yield "Energy captured: 1 - sum (r - s)^2 / sum r^2, r of the record and s of the pulse."
+    yield Aside("Energy captured: 1 - sum (r - s)^2 / sum r^2, r of the record and s of the pulse.")
 
 
 ORDINATES: tuple[Column[ResponseSpectrum], ...] = (
