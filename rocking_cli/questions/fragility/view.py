@@ -204,9 +204,8 @@ def half(found: Fragility) -> str:
         if median is None or senseless(curve):
             return f"at no known {measure}"
         end = f" {unit}" * bool(unit)
-        interval = "exact" if median.low == median.high else (
-            f"{100 * curve.confidence:g} %: {median.low:.3g} to {median.high:.3g}{end}"
-        )  # fmt: skip
+        most = f"{end} or more" if isinf(median.high) else f" to {median.high:.3g}{end}"
+        interval = f"{100 * curve.confidence:g} %: {median.low:.3g}{most}" if median.low < median.high else "exact"
         within = each.seen.x.min() <= median.value <= each.seen.x.max()
         return f"at {measure} {median.value:.3g}{end} ({interval})" + ("" if within else ", outside the levels tried")
 
