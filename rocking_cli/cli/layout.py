@@ -76,7 +76,7 @@ def grid(
     columns, rows : sequence
         Headings, and cells; their line breaks are kept.
     numbers : collection of int
-        Indices of columns to align to the right, which never wrap, like the first column.
+        Indices of columns to align to the right.
     width : int or None
         Columns of the terminal; None for no terminal, and rows of any length.
     rule : str
@@ -89,7 +89,7 @@ def grid(
     gap = 3 if width is None or _whole(needs, 3) <= width else 2
     if width is not None and _whole(needs, gap) > width:
         may_wrap, least = narrow or width >= MIN_WIDTH_TO_WRAP, NARROW_CELL_WIDTH if narrow else MIN_CELL_WIDTH
-        free = [k for k in range(1, len(needs)) if may_wrap and k not in numbers]
+        free = range(1, len(needs) if may_wrap else 1)
         while _whole(needs, gap) > width:
             widest = max(free, key=lambda k: needs[k], default=0)
             if not widest or needs[widest] <= least:

@@ -37,7 +37,7 @@ class Table:
     rows : sequence of sequence of str
         Cells of each row.
     numbers : collection of int
-        Indices of columns that are aligned to the right; these and the first never wrap.
+        Indices of columns that are aligned to the right.
     ranks : sequence of int
         Rank of each column: if a terminal is too narrow, those with the largest leave first, and those with 0 never;
         `ASIDE` for those shown with --all only. By default all are 0.
