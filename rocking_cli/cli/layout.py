@@ -61,14 +61,9 @@ def _folded(line: str, width: int, hang: str = "") -> list[str]:
 
 
 def grid(
-    columns: Sequence[str],
-    rows: Sequence[Sequence[str]],
-    numbers: Collection[int],
-    width: int | None,
-    rule: str,
-    *,
-    narrow: bool = False,
-) -> tuple[list[str], list[str]] | None:
+    columns: Sequence[str], rows: Sequence[Sequence[str]], numbers: Collection[int], width: int | None, rule: str,
+    *, narrow: bool = False,
+) -> tuple[list[str], list[str]] | None:  # fmt: skip
     """Return the lines of the headings of a grid, and those of its rows; None if it does not fit the width.
 
     Parameters

@@ -16,12 +16,11 @@ from rocking_cli.ask.asked import AskedModel, Kind, choices, in_order, no_effect
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.cli import terminal
 from rocking_cli.cli.help import (
-    ALL_HELP,
-    JSON_HELP,
     MOTIONS_HEADING,
     OPTIONS_HEADING,
     OUTPUT_HEADING,
     PULSES,
+    SWITCHES,
     Command,
     HeadedOption,
     completer,
@@ -39,8 +38,8 @@ class Made(Command):
 
     def __init__(self, name: str, model: type[AskedModel], short_help: str) -> None:
         params = [*_arguments(model), *_motions(model), *_options(model)]
-        for names, text in ((["--all", "in_full"], ALL_HELP), (["--json", "as_json"], JSON_HELP)):
-            params.append(HeadedOption(names, heading=OUTPUT_HEADING, is_flag=True, help=text))
+        for *switch, text in SWITCHES:
+            params.append(HeadedOption(switch, heading=OUTPUT_HEADING, is_flag=True, help=text))
         super().__init__(name, params=params, callback=self.run, help=model.__doc__, short_help=short_help)
         self.model = model
 

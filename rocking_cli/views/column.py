@@ -125,7 +125,10 @@ def of_part(columns: Iterable[Column[P]], part: Callable[[R], P | None]) -> list
     def value_in(column: Column[P]) -> Callable[[R], Any]:
         return lambda row: None if (there := part(row)) is None else column.of(there)
 
-    return [only_shown(each.head, value_in(each), each.form, each.unit, text=each.text, rank=each.rank) for each in columns]
+    return [
+        only_shown(each.head, value_in(each), each.form, each.unit, text=each.text, rank=each.rank, words=each.words)
+        for each in columns
+    ]
 
 
 def text_columns(*heads: str) -> list[Column[Sequence[str]]]:

@@ -110,8 +110,6 @@ def walked(line, **files):
     assert done.exit_code == 0 or isinstance(done.exception, SystemExit), done.exception
     assert not HARMFUL.search(done.stdout + done.stderr)
     assert screens.text() or command in PLAIN or "-o -" in line or done.exit_code
-    if command == "record" and "*" in line:  # only the table of several is laid out by the width
-        screens.out |= {width: StringIO(run(line, env={"COLUMNS": str(width)}).stdout) for width in WIDTHS}
     screens.check()
     made = sorted(set(Path().rglob("*")) - before)
     pictures = [file for file in made if file.suffix == ".svg"]

@@ -67,9 +67,7 @@ def _trace_parts(found: TraceFit, structure: Structure) -> Iterator[Table | str]
         f"{heading(structure.mechanism)}, let go at {degrees(found.release):.4g} deg at {found.release_time:.4g} s. "
         f"{count} impacts are seen above the noise of {degrees(found.noise):.2g} deg."
     )
-    yield Aside(
-        f"The standard deviation is that of noise, of the scatter over some {count} impacts, and of {geometry}."
-    )
+    yield Aside(f"The deviation is that of noise, of the scatter over some {count} impacts, and of {geometry}.")
     yield Aside(
         f"From impact to impact eta scatters by {pooled.seen:.2g}, the last one left out; 5 to 95 %: {low:.2g} to "
         f"{high:.2g}. What neighbours should draw is drawn towards {MEASURED_SPREAD:g}, the scatter of bodies whose "
@@ -89,8 +87,8 @@ def _trace_parts(found: TraceFit, structure: Structure) -> Iterator[Table | str]
         )
     pairs = zip(found.impacts, found.etas, strict=True)
     yield table_of("", IMPACTS, [ImpactRow(k, *pair) for k, pair in enumerate(pairs, 1)])
-    at_rest = f"At rest, the trace reads {_pair(found.offset)} deg at time zero and drifts by {_pair(found.drift)} deg/s."
-    yield Aside(at_rest)
+    rest = f"{_pair(found.offset)} deg at time zero and drifts by {_pair(found.drift)} deg/s"
+    yield Aside(f"At rest, the trace reads {rest}.")
     yield _residuals(found)
 
 

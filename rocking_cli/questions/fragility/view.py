@@ -371,12 +371,10 @@ def cut_of(found: Fragility) -> Cut | None:
 
 def _is_sound(found: Fragility | Bivariate) -> bool:
     """Whether nothing speaks against a curve: it is exact, or it is bounded and no test rejects it."""
-    from rocking_cli.questions.fragility.assess import Fragility
-
-    if not isinstance(found, Fragility):
-        return False
-    curve = found.curve
-    return curve.is_exact or (curve.fit is not None and not curve.rejected and curve.fit.intervals[1].low > 0)
+    curve = getattr(found, "curve", None)  # which surfaces lack
+    return curve is not None and (
+        curve.is_exact or (curve.fit is not None and not curve.rejected and curve.fit.intervals[1].low > 0)
+    )
 
 
 def _remarks(found: Fragility | Bivariate) -> Iterator[str]:
@@ -385,14 +383,13 @@ def _remarks(found: Fragility | Bivariate) -> Iterator[str]:
 
     if not isinstance(found, Fragility):
         return
-    rate = found.rate
     if words := senseless(found.curve):
         yield words.strip()
     if (cut := cut_of(found)) is not None:
         of = f"that of {limit_name(cut.by)}, which it implies"
         by = "lambda, up to which nothing uplifts" if cut.by == UPLIFT_MEASURE else of
         yield Aside(f"Curve and band are cut by {by}: by up to {cut.most:.2g} at {cut.at:.3g}.")
-    if rate is not None and rate.rate > 0:
+    if (rate := found.rate) is not None and rate.rate > 0:
         yield (
             f"Exceeded once in {rate.return_period:,.0f} years (annual rate {rate.low:.3g} to {rate.high:.3g}), "
             f"{100 * rate.in_50_years:.2g} % in 50 years."

@@ -88,7 +88,7 @@ def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionles
 
 
 def _smallest(found: OverturningMap, unit: float, *, dimensionless: bool) -> str:
-    """Say which amplitude on the map is the smallest that overturns, or may, and whether a smaller one may be beyond."""
+    """Say which amplitude on a map is the smallest that overturns, or may, and if a smaller one may be beyond it."""
     name, sign, end, of, across = found.structure.name, "a_g", " g", "T", found.periods
     if dimensionless:
         name, sign, end, of, across = f"the {name}", "a", "", "omega", found.omega

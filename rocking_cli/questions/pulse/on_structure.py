@@ -18,9 +18,8 @@ from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.names import percent
+from rocking_cli.questions.pulse.view import CLOSED as OF_CLOSED
 from rocking_cli.questions.pulse.view import (
-    CONDITIONS,
-    YES_NO,
     after_impacts,
     closed_data,
     how_far_off,
@@ -34,12 +33,12 @@ from rocking_cli.studies.contact import Contacts
 from rocking_cli.studies.engines import follow
 from rocking_cli.studies.response import Histories, concluded
 from rocking_cli.views.cautions import of_bounds
-from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
+from rocking_cli.views.column import Column, data_of, of, of_part, only_shown, rounded, table_across, table_of
 from rocking_cli.views.conclusion import conclusion_data
 from rocking_cli.views.response import known_data, model_heads, not_checked, pulse_data
 from rocking_cli.views.restitution import restitution_data, restitution_used
 from rocking_cli.views.verdict import NO_JOINTS, ends, joints_in_words, uplift_in_words
-from rocking_cli.views.view import Aside, Table, View, heading, in_degrees, number
+from rocking_cli.views.view import Aside, Table, View, heading, in_degrees
 
 KAPPAS: dict[ModelName, Literal[1, 2]] = {"linear1": 1, "linear2": 2}
 
@@ -185,17 +184,10 @@ class _Beside(NamedTuple):
     exact: ExactResponse
 
 
-def _condition(place: int, name: str) -> Column[_Beside]:
-    return only_shown(f"condition {place}", lambda each: each.closed.conditions[name], YES_NO.__getitem__)
-
-
 CLOSED: tuple[Column[_Beside], ...] = (
-    only_shown("D0* (Eq. 42)", of("closed.D0"), number),
-    only_shown("max ratio (Eq. 41)", of("closed.max_ratio"), number),
-    only_shown("  minus exact first rebound", lambda each: each.closed.off(each.exact.first_rebound), rounded(3)),
-    only_shown("  minus exact peak", lambda each: each.closed.off(each.exact.peak_ratio), rounded(3)),
-    only_shown("overturns after one impact", of("closed.overturns"), YES_NO.__getitem__),
-    *(_condition(place, name) for place, name in enumerate(CONDITIONS, start=1)),
+    *of_part(OF_CLOSED, of("closed")),
+    only_shown("minus exact first rebound", lambda each: each.closed.off(each.exact.first_rebound), rounded(3)),
+    only_shown("minus exact peak", lambda each: each.closed.off(each.exact.peak_ratio), rounded(3)),
 )
 EXACT = {True: "exact", False: "sampled"}
 
@@ -353,10 +345,8 @@ def _verdict(answers: Mapping[str, Answer], mechanism: Mechanism) -> str:
 def _closed_parts(closed: Mapping[str, ClosedForm], exact: Mapping[str, ExactResponse]) -> Iterator[Table | str]:
     """Yield the closed form, its conditions, and a sentence on how far to trust it."""
     rows = [_Beside(form, exact[name]) for name, form in closed.items()]
-    table = table_across("Closed form of a full sine", CLOSED, list(closed), rows, {})
+    table = table_across("Closed form of a full sine", CLOSED, list(closed), rows, {"meaning": of("words")})
     yield replace(table, asides=range(len(table.rows)))
-    for place, condition in enumerate(CONDITIONS.values(), start=1):
-        yield Aside(f"{place}: {condition}")
     for name, form in closed.items():
         yield Aside(f"{name}: {_trust(form, exact[name])}")
 

@@ -23,6 +23,8 @@ CONDITIONS = {
 LINEAR_BLOCK = Aside(
     "The linear block is the equivalent block of any structure: a = a_g/(g lambda), omega = omega_g/p, tau = p t."
 )
+IN_WORDS = {"  overturns", "  impacts"}
+"""Headings of what the first sentence has."""
 YES_NO = {True: "yes", False: "no", None: ABSENT}
 
 
@@ -40,22 +42,17 @@ CLOSED: tuple[Column[ClosedForm], ...] = (
 
 
 def _exact(
-    key: str,
-    value: Callable[[ExactResponse], Any],
-    head: str,
-    words: str = "",
-    form: Callable[[Any], str] = number,
-    rank: int = 0,
+    key: str, value: Callable[[ExactResponse], Any], head: str, words: str = "", form: Callable[[Any], str] = number
 ) -> Column[ExactResponse]:
-    return Column(key, value, "", head, form, words=words, rank=rank)
+    return Column(key, value, "", head, form, words=words, rank=ASIDE * (head in IN_WORDS))
 
 
 EXACT: tuple[Column[ExactResponse], ...] = (
     _exact("max_ratio", of("peak_ratio"), "exact max ratio", "largest rotation over phi_cr"),
     _exact("first_excursion", of("first_excursion"), "  first excursion", "peak before the first impact"),
     _exact("first_rebound", of("first_rebound"), "  first rebound", "peak after the first impact"),
-    _exact("overturns", of("fell"), "  overturns", form=YES_NO.__getitem__, rank=ASIDE),
-    _exact("impacts_before_overturning", lambda exact: impacts_before(exact), "  impacts", "before it overturns", str, ASIDE),
+    _exact("overturns", of("fell"), "  overturns", form=YES_NO.__getitem__),
+    _exact("impacts_before_overturning", lambda exact: impacts_before(exact), "  impacts", "before it overturns", str),
     _exact("uplift", of("uplift_time"), "  uplift", "tau = p t from the start of the pulse"),
     _exact("pulse_end", lambda exact: exact.pulse_end - exact.uplift_time, "  end of pulse", "tau from uplift"),
     _exact("first_impact", lambda exact: exact.first_impact - exact.uplift_time, "  first impact", "tau from uplift"),

@@ -27,10 +27,7 @@ if TYPE_CHECKING:
     from rocking_cli.processing.intensity import Measure
     from rocking_cli.processing.oscillator import ResponseSpectrum
 
-MAX_NAME_LINE = 14  # characters of a line of a record's name above its column, broken at blanks
 MAX_HEADING_LINE = 9  # characters of a line of a heading above a quantity
-LABELS_WIDTH = 26  # characters that labels and units take in a table
-COLUMN_GAP = 3  # blanks between columns
 IN_WORDS = {"dt", "duration", "PGA", "PGV"}
 """Headings of the quantities of a single record that a sentence has."""
 
@@ -60,35 +57,30 @@ def _channel(record: Examined) -> str | None:
     return record.motion.name.partition(f"{Path(record.file).name} channel ")[2] or None
 
 
-def _folded(name: str, width: int = MAX_NAME_LINE) -> str:
-    """Break a name at blanks into lines of a column's width."""
-    return "\n".join(wrap(name, width, break_long_words=False, break_on_hyphens=False))
-
-
 AS_READ: tuple[Column[Examined], ...] = (
     Column("file", of("file")),
     Column("name", of("motion.name")),
-    Column("format", of("motion.format"), head="format", form=_folded, rank=ASIDE),
+    Column("format", of("motion.format"), head="format", rank=ASIDE),
     Column("channel", _channel, head="channel"),
     Column("unit", of("motion.source_unit"), head="unit in the file", rank=ASIDE),
     Column("origin", lambda record: record.motion.origin._asdict()),
-    only_shown("earthquake", lambda record: record.motion.origin.event or None, _folded),
-    only_shown("station", lambda record: record.motion.origin.station or None, _folded),
-    only_shown("magnitude", of("motion.origin.magnitude"), number),
-    only_shown("distance", of("motion.origin.distance"), unit="km"),
+    only_shown("earthquake", lambda record: record.motion.origin.event or None, rank=4),
+    only_shown("station", lambda record: record.motion.origin.station or None, rank=4),
+    only_shown("magnitude", of("motion.origin.magnitude"), number, rank=3),
+    only_shown("distance", of("motion.origin.distance"), unit="km", rank=3),
     Column("npts", of("motion.npts"), head="points", rank=ASIDE),
-    Column("dt", of("motion.dt"), "s", "dt", number),
-    Column("duration", of("motion.duration"), "s", "duration", number),
-    only_shown("processed", lambda record: "\n".join(record.motion.processing) or None),
-    only_shown("prepared from", lambda record: record.motion.prepared_from or None, _folded),
+    Column("dt", of("motion.dt"), "s", "dt", number, rank=3),
+    Column("duration", of("motion.duration"), "s", "duration", number, rank=3),
+    only_shown("processed", lambda record: ", ".join(record.motion.processing) or None, rank=4),
+    only_shown("prepared from", lambda record: record.motion.prepared_from or None, rank=4),
     Column("factor", of("factor"), head="scaled by", form=number),
 )
 MEASURED: tuple[Column[Examined], ...] = (
     Column("pga_g", of("measures.pga_g"), "g", "PGA"),
-    Column("pgv", of("measures.pgv"), "m/s", "PGV"),
-    Column("pgd", of("measures.pgd"), "m", "PGD"),
-    Column("arias_intensity", of("measures.arias"), "m/s", "Arias intensity"),
-    Column("significant_duration", of("measures.significant_duration"), "s", "5-95 % duration"),
+    Column("pgv", of("measures.pgv"), "m/s", "PGV", rank=1),
+    Column("pgd", of("measures.pgd"), "m", "PGD", rank=2),
+    Column("arias_intensity", of("measures.arias"), "m/s", "Arias intensity", rank=2),
+    Column("significant_duration", of("measures.significant_duration"), "s", "5-95 % duration", rank=2),
     Column("t_5", of("measures.t_5"), "s", "5 % of Arias at", rank=ASIDE),
     Column("t_95", of("measures.t_95"), "s", "95 % of Arias at", rank=ASIDE),
     Column("mean_acceleration", of("measures.mean"), "g", "mean acceleration", rounded(2), rank=ASIDE),
@@ -111,20 +103,17 @@ def data(record: Examined) -> dict[str, Any]:
     return entry
 
 
-def parts(records: Sequence[Examined], width: int | None) -> Iterator[Table | str]:
-    """Yield tables with a column for each record, as many as the width requires, then the pulses of each record.
+def parts(records: Sequence[Examined]) -> Iterator[Table | str]:
+    """Yield how strong the records are, and whether they have defects, a table, and the pulses of each record.
 
-    First comes a sentence on how strong the records are, and whether they have defects.
-
-    If a table has room for one record only, the name is its title. Without a width, as in a pipe, several records are
-    one table with a row for each.
+    A record alone is a column of its table; of several, each is a row, without line breaks.
     """
-    columns = _columns(records)
     yield in_words(records)
-    if width is None and len(records) > 1:
-        yield _long(records, columns)
+    columns = _columns(records)
+    if len(records) == 1:
+        yield table_across(records[0].label, columns, ["value"], records)
     else:
-        yield from _side_by_side(records, columns, width)
+        yield _long(records, columns)
     for record in records:
         if record.pulses:
             yield from _pulses(record.label, record.pulses)
@@ -143,31 +132,13 @@ def in_words(records: Sequence[Examined]) -> str:
     return f"{words}. " + (f"Possible defects{whose}: see the warnings." if doubtful else "No defects found.")
 
 
-def _side_by_side(
-    records: Sequence[Examined], columns: Sequence[Column[Examined]], width: int | None
-) -> Iterator[Table]:
-    """Yield tables with a column for each record."""
-    names = [_folded(record.label) for record in records]
-    fitting = len(records)
-    if width is not None:
-        widest = max(MAX_NAME_LINE, *(len(line) for name in names for line in name.split("\n")))
-        fitting = max((width - LABELS_WIDTH) // (widest + COLUMN_GAP), 1)
-    for start in range(0, len(records), fitting):
-        part = slice(start, start + fitting)
-        title, headings = ("", names[part])
-        if len(headings) == 1:
-            title, headings = records[start].label, ["value"]
-        yield table_across(title, columns, headings, records[part])
-
-
 def _long(records: Sequence[Examined], columns: Sequence[Column[Examined]]) -> Table:
-    """Return a table with a row for each record, none of which has a line break."""
-    narrow = []  # with their units in the headings, which are broken into lines
+    """Return a table with a row for each record, with units in its headings."""
+    narrow = []
     for each in columns:
-        unit = f"\n[{each.unit}]" if each.unit else ""
-        narrow.append(replace(each, head=f"{_folded(each.head or '', MAX_HEADING_LINE)}{unit}"))
-    whole = table_of("", [only_shown("record", of("label"), text=True), *narrow], records)
-    return replace(whole, rows=[[cell.replace("\n", " ") for cell in row] for row in whole.rows])
+        lines = wrap(each.head or "", MAX_HEADING_LINE, break_long_words=False, break_on_hyphens=False)
+        narrow.append(replace(each, head="\n".join([*lines, *[f"[{each.unit}]"] * bool(each.unit)])))
+    return table_of("", [only_shown("record", of("label"), text=True), *narrow], records)
 
 
 def _columns(records: Sequence[Examined]) -> list[Column[Examined]]:

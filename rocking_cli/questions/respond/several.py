@@ -121,11 +121,11 @@ class Several:
     def _peaks(self) -> Iterator[Column[MotionRow]]:
         """Yield the columns of the peak displacement of the control point, and of the largest force of each tie."""
         at = [*self._watched.points].index(self._watched.control)
-        how = rounded(4, 1e3), f"{self._watched.control}, horizontal displacement"
-        yield Column(None, partial(_peak, "points", at, "horizontal"), "m", f"{self._watched.control}\n[mm]", *how, rank=3)
+        how = rounded(4, 1e3), f"{self._watched.control}, horizontal displacement", "", False, 3
+        yield Column(None, partial(_peak, "points", at, "horizontal"), "m", f"{self._watched.control}\n[mm]", *how)
         for k, tie in enumerate(self._watched.ties):
-            how = rounded(4, 1e-3), f"{tie.name}, force"
-            yield Column(None, partial(_peak, "ties", k, "force"), "N", f"{tie.name}\n[kN]", *how, rank=3)
+            how = rounded(4, 1e-3), f"{tie.name}, force", "", False, 3
+            yield Column(None, partial(_peak, "ties", k, "force"), "N", f"{tie.name}\n[kN]", *how)
 
     def columns(self) -> Columns:
         """Return the peaks under each motion as columns: of the control point [m] and of ties [N]."""

@@ -116,6 +116,8 @@ PARAMETERS: tuple[Column[RankedStructure], ...] = (
 
 OF_MOTIONS = {"overturned", "unknown"}
 """Keys of the columns on the motions themselves, which tables do not show beside those of their neighbours."""
+RARE = ("side", "slip", "unknown", "not_counted")
+"""Keys of the columns that tables show only if any row has a value."""
 
 
 def texts_in(key: str) -> Language:
@@ -220,17 +222,12 @@ def _with_decimal(sheet: Spreadsheet, cell: str, decimal: str) -> str:
 
 def table(found: Survey, top: int, longest: int | None = MAX_NAME_LENGTH, say: Language = ENGLISH) -> Table:
     """Return a table of the first rows, with names of at most `longest` characters."""
-    under, rows = [each.under for each in found.rows if each.under is not None], _ranked(found)
-    known = not any(each.unknown for each in under)
-    empty = set(OF_MOTIONS) if found.around.count else {"unknown"} if known else set[str]()
-    if all(each.side is None for each in found.rows):
-        empty.add("side")
-    if not any(each.slip for each in under):
-        empty.add("slip")
-    if all(_not_counted(row) is None for row in rows):
-        empty.add("not_counted")
-    empty |= {name for name in found.units if all(each.numbers[name] is None for each in found.rows)}
-    shown = [column for column in _columns(found) if column.key not in empty]
+    rows, hidden = _ranked(found), OF_MOTIONS if found.around.count else set[str]()
+    shown = [
+        column for column in _columns(found)
+        if column.key not in hidden
+        and (column.key not in {*RARE, *found.units} or any(column.of(row) not in (None, 0) for row in rows))
+    ]  # fmt: skip
     if any(caution_of(row) is not None for row in rows):
         mark = partial(caution_of, say=say) if longest is None else lambda row: caution_of(row) and "yes"
         shown.append(only_shown("caution", mark, text=True))
@@ -315,9 +312,10 @@ def _of_motions(found: Survey) -> str:
     unknown = f", {doubtful:,} may overturn (unknown outcome)" if doubtful else ""
     unknown += f", {slides:,} only {'slides' if slides == 1 else 'slide'}" if slides else ""
     verb = "overturns" if falls == 1 else "overturn"
+    first = f" {_named(found.rows[:1])} is the most vulnerable." if found.by == "response" and len(under) > 1 else ""
     return (
         f"Under {motions}, {falls:,} of {_structures(len(under))} {verb}{unknown}, and {lifts:,} "
-        f"{'uplifts' if lifts == 1 else 'uplift'}." + f" {_named(found.rows[:1])} is the most vulnerable." * (found.by == "response" and len(under) > 1)
+        f"{'uplifts' if lifts == 1 else 'uplift'}.{first}"
     )
 
 

@@ -52,8 +52,10 @@ class TestWhatIsShown:
     def test_the_table_has_every_measure_and_no_row_that_says_nothing(self):
         result = run("record", ACCEL, "--all")
         data = run_json("record", ACCEL)
-        said = f"accel.csv: PGA {data['pga_g']:.3g} g, PGV {data['pgv']:.3g} m/s; {data['duration']:g} s at dt = 0.01 s."
-        assert result.stdout.startswith(f"{said} No defects found.\n") and not data["warnings"]
+        said = (
+            f"accel.csv: PGA {data['pga_g']:.3g} g, PGV {data['pgv']:.3g} m/s; {data['duration']:g} s at dt = 0.01 s. "
+        )
+        assert result.stdout.startswith(f"{said}No defects found.\n") and not data["warnings"]
         for key in ("pga_g", "pgv", "pgd", "arias_intensity", "significant_duration", "t_5", "t_95"):
             assert f"{data[key]:.4g}" in result.stdout
         assert all(word in result.stdout for word in ("accel.csv", "text", "1201", "m/s", "5-95 %"))
