@@ -82,7 +82,7 @@ class Column(Generic[R]):
         Whether values are words: aligned to the left, and empty in files if they do not exist.
     rank : int
         Order in which columns leave a narrow terminal, the largest first; 0 for one that stays, `ASIDE` for one that
-        terminals show with --all only.
+        terminals show in full only.
     """
 
     key: str | None

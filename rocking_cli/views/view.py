@@ -14,12 +14,12 @@ if TYPE_CHECKING:
     from rocking_cli.excitation.base import GroundMotion
 
 ABSENT = "-"
-ASIDE = 9  # rank of a column, or of the line of a quantity, that terminals show with --all only
+ASIDE = 9  # rank of a column, or of the line of a quantity, that terminals show in full only
 MAX_DETAILED_MOTIONS = 3  # motions or records with lines of their own; more are listed in a table
 
 
 class Aside(str):
-    """Sentence that terminals print with --all only: an explanation of terms, or a note on the method."""
+    """Sentence that terminals print in full only: an explanation of terms, or a note on the method."""
 
     __slots__ = ()
 
@@ -40,9 +40,9 @@ class Table:
         Indices of columns that are aligned to the right.
     ranks : sequence of int
         Rank of each column: if a terminal is too narrow, those with the largest leave first, and those with 0 never;
-        `ASIDE` for those shown with --all only. By default all are 0.
+        `ASIDE` for those shown in full only. By default all are 0.
     asides : collection of int
-        Indices of rows that terminals show with --all only.
+        Indices of rows that terminals show in full only.
     """
 
     title: str

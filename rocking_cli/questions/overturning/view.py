@@ -105,13 +105,13 @@ def _smallest(found: OverturningMap, unit: float, *, dimensionless: bool) -> str
         return f"{step}, the edge of the map: beyond it, less may do." if edge else f"{step}."
 
     known, may = (not np.isnan(curve).all() for curve in (least, doubtful))
-    said = [f"The smallest {sign} on the map that overturns {name} is {smallest(least)}"] if known else [
+    sentences = [f"The smallest {sign} on the map that overturns {name} is {smallest(least)}"] if known else [
         f"No pulse on the map {'is known to overturn' if may else 'overturns'} {name}, up to "
         f"{unit * found.a[-1]:.3g}{end}, from {at(0)} to {at(-1)}."
     ]  # fmt: skip
     if may and not (known and np.nanmin(least) <= np.nanmin(doubtful)):
-        said.append(f"The smallest {sign} whose outcome is unknown is {smallest(doubtful)}")
-    return " ".join(said)
+        sentences.append(f"The smallest {sign} whose outcome is unknown is {smallest(doubtful)}")
+    return " ".join(sentences)
 
 
 def map_title(found: OverturningMap) -> str:

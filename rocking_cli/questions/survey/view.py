@@ -368,8 +368,8 @@ def _of_neighbours(found: Survey) -> Iterator[str]:
         return
     of = f"{found.around.count} neighbours ({deviations(found.around)})"
     mean = " of each motion, the mean over the motions" if len(found.motions) > 1 else ""
-    said = f"The share is that of {of}{mean}"
-    yield f"{said}; {fewer}." if found.reduced else Aside(f"{said}.")
+    share = f"The share is that of {of}{mean}"
+    yield f"{share}; {fewer}." if found.reduced else Aside(f"{share}.")
 
 
 def _not_known(rows: Sequence[Surveyed]) -> Iterator[str]:
