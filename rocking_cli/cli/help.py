@@ -84,8 +84,13 @@ class Command(click.Command):
                     formatter.write_dl(records)
 
 
-JSON_HELP = "Print the result as one JSON object, and nothing else."
-as_json = click.option("--json", "as_json", cls=HeadedOption, heading=OUTPUT_HEADING, is_flag=True, help=JSON_HELP)
+SWITCHES = (
+    ("--all", "in_full", "Show all: explanations, notes on the method, and the rows and columns left out otherwise."),
+    ("--json", "as_json", "Print the result as one JSON object, and nothing else."),
+)
+"""What commands show: the switch, its parameter, and its help."""
+_how: Any = {"cls": HeadedOption, "heading": OUTPUT_HEADING, "is_flag": True}
+in_full, as_json = (click.option(*names, help=text, **_how) for *names, text in SWITCHES)
 CODES, MECHANISMS, PULSES = "rocking.codes", "rocking.mechanisms", "rocking.pulses"
 """Entry-point groups, as in the modules of the plugins, which take long to import."""
 Completer = Callable[[click.Context, click.Parameter, str], list[CompletionItem]]

@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 
 HANGING_INDENT = 2  # blanks before the continuation lines of a sentence
 MIN_WIDTH_TO_WRAP = 60  # columns: in less, a table column has room for only a word or two
-MIN_CELL_WIDTH = 18  # columns of a wrapped cell
+MIN_CELL_WIDTH, NARROW_CELL_WIDTH = 18, 12  # columns of a wrapped cell, and of one in a table of few columns
 _TRACEBACK = "Traceback (most recent call last)"  # printed unwrapped, as it is meant for programmers
 
 
@@ -61,8 +61,9 @@ def _folded(line: str, width: int, hang: str = "") -> list[str]:
 
 
 def grid(
-    columns: Sequence[str], rows: Sequence[Sequence[str]], numbers: Collection[int], width: int | None, rule: str
-) -> tuple[list[str], list[str]] | None:
+    columns: Sequence[str], rows: Sequence[Sequence[str]], numbers: Collection[int], width: int | None, rule: str,
+    *, narrow: bool = False,
+) -> tuple[list[str], list[str]] | None:  # fmt: skip
     """Return the lines of the headings of a grid, and those of its rows; None if it does not fit the width.
 
     Parameters
@@ -70,20 +71,23 @@ def grid(
     columns, rows : sequence
         Headings, and cells; their line breaks are kept.
     numbers : collection of int
-        Indices of columns to align to the right, which never wrap, like the first column.
+        Indices of columns to align to the right.
     width : int or None
         Columns of the terminal; None for no terminal, and rows of any length.
     rule : str
         Character of the line under the headings.
+    narrow : bool
+        Whether cells wrap in any width, and in fewer columns.
     """
     lines = [[cell.split("\n") for cell in line] for line in (columns, *rows)]
     needs = _needs(lines)
     gap = 3 if width is None or _whole(needs, 3) <= width else 2
     if width is not None and _whole(needs, gap) > width:
-        free = [k for k in range(1, len(needs)) if k not in numbers] if width >= MIN_WIDTH_TO_WRAP else []
+        may_wrap, least = narrow or width >= MIN_WIDTH_TO_WRAP, NARROW_CELL_WIDTH if narrow else MIN_CELL_WIDTH
+        free = range(1, len(needs) if may_wrap else 1)
         while _whole(needs, gap) > width:
             widest = max(free, key=lambda k: needs[k], default=0)
-            if not widest or needs[widest] <= MIN_CELL_WIDTH:
+            if not widest or needs[widest] <= least:
                 return None
             needs[widest] -= 1
         lines = [

@@ -16,11 +16,11 @@ from rocking_cli.ask.asked import AskedModel, Kind, choices, in_order, no_effect
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.cli import terminal
 from rocking_cli.cli.help import (
-    JSON_HELP,
     MOTIONS_HEADING,
     OPTIONS_HEADING,
     OUTPUT_HEADING,
     PULSES,
+    SWITCHES,
     Command,
     HeadedOption,
     completer,
@@ -38,7 +38,8 @@ class Made(Command):
 
     def __init__(self, name: str, model: type[AskedModel], short_help: str) -> None:
         params = [*_arguments(model), *_motions(model), *_options(model)]
-        params.append(HeadedOption(["--json", "as_json"], heading=OUTPUT_HEADING, is_flag=True, help=JSON_HELP))
+        for *switch, text in SWITCHES:
+            params.append(HeadedOption(switch, heading=OUTPUT_HEADING, is_flag=True, help=text))
         super().__init__(name, params=params, callback=self.run, help=model.__doc__, short_help=short_help)
         self.model = model
 

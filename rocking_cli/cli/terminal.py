@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 import sys
 import warnings
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, nullcontext, redirect_stdout
 from functools import partial
 from pathlib import Path
@@ -31,10 +31,11 @@ from rocking_cli.errors import (
 )
 from rocking_cli.io.json_text import json_text
 from rocking_cli.text import printable
+from rocking_cli.views.view import ASIDE, Aside
 
 if TYPE_CHECKING:
     from rocking_cli.ask.answer import Answer
-    from rocking_cli.views.view import View
+    from rocking_cli.views.view import Table, View
 
 PROGRESS_DELAY = 1.0  # s of work before progress is shown
 NOWHERE = Path(os.devnull)
@@ -324,46 +325,75 @@ def working(what: str) -> Iterator[None]:
         yield
 
 
-def table(
-    title: str, columns: Sequence[str], rows: Sequence[Sequence[str]], *, numbers: Collection[int] = ()
-) -> None:  # fmt: skip
-    """Print a table of the result: a grid, or a block of lines for each row if the terminal is too narrow.
+def table(shown: Table, *, in_full: bool = True) -> bool:
+    """Print a table of the result: a grid, without the least important columns if the terminal is narrow.
+
+    If not even the most important columns fit, or if all are to be shown, it is a block of lines for each row.
 
     Parameters
     ----------
-    title : str
-        Title, printed above the table.
-    columns : sequence of str
-        Headings; a line break in one, or in a cell, is kept in a grid.
-    rows : sequence of sequence of str
-        Cells.
-    numbers : collection of int
-        Indices of columns to align to the right; these and the first never wrap.
+    shown : Table
+        The table; a line break in a heading or a cell is kept in a grid.
+    in_full : bool
+        Whether all rows and columns are shown.
+
+    Returns
+    -------
+    bool
+        Whether the table has rows or columns that are not shown because they are of little importance.
     """
-    room, columns = width(), [printable(each) for each in columns]
-    rows = [[printable(cell) for cell in row] for row in rows]
-    if title:
-        click.echo(click.style(wrapped(printable(title), room), bold=True), file=_results)
+    room, ranks = width(), shown.ranks or [0] * len(shown.columns)
+    rows = [row for k, row in enumerate(shown.rows) if in_full or k not in shown.asides]
+    kept = [k for k, rank in enumerate(ranks) if in_full or rank < ASIDE]
+    aside = len(rows) < len(shown.rows) or len(kept) < len(ranks)
+    if shown.rows and not rows:
+        return aside
+    if shown.title:
+        click.echo(click.style(wrapped(printable(shown.title), room), bold=True), file=_results)
     encoding = getattr(_results or sys.stdout, "encoding", None) or "utf-8"
-    lines = grid(columns, rows, numbers, room, "─" if encoding.lower().startswith("utf") else "-")
+    rule, left = "─" if encoding.lower().startswith("utf") else "-", list[int]()
+    while True:
+        columns, *cells = [[printable(line[k]) for k in kept] for line in (shown.columns, *rows)]
+        numbers = [k for k, place in enumerate(kept) if place in shown.numbers]
+        lines = grid(columns, cells, numbers, room, rule)
+        least = max(kept, key=lambda k: (ranks[k], k))
+        if lines is not None or in_full or not ranks[least]:
+            lines = lines or (grid(columns, cells, numbers, room, rule, narrow=True) if left else None)
+            break
+        kept.remove(least)
+        left.append(least)
     if lines is not None:
         heads, body = lines
         click.echo("\n".join([*(click.style(line, bold=True) for line in heads), *body]), file=_results)
     else:
         assert room is not None  # without a width, every grid fits
-        click.echo("\n".join(["", *stacked(columns, rows, room), ""]), file=_results)
+        click.echo("\n".join(["", *stacked(columns, cells, room), ""]), file=_results)
+    if left:
+        names = ", ".join(shown.columns[k].replace("\n", " ") for k in sorted(left))
+        sentence(f"No room for {names}: use a wider terminal, or --all.")
+    return aside
 
 
 def show(view: View, *, as_json: bool) -> None:
-    """Print a result: as one line of JSON, or as its tables and sentences, with options as they are typed."""
+    """Print a result: as one line of JSON, or as its tables and sentences, with options as they are typed.
+
+    Without --all, a command that has this option leaves out what is of little importance.
+    """
     if as_json:
         print_json(view.plain())
         return
+    context = click.get_current_context(silent=True)
+    in_full = context is None or context.params.get("in_full", True) or asked("verbose")
+    more = False
     for part in view.parts:
-        if isinstance(part, str):
+        if not isinstance(part, str):
+            more |= table(part, in_full=in_full)
+        elif in_full or not isinstance(part, Aside):
             sentence(part)
         else:
-            table(part.title, part.columns, part.rows, numbers=part.numbers)
+            more = True
+    if more:
+        note("--all shows more")
 
 
 class OnTerminal(Watcher):

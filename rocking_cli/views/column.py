@@ -11,7 +11,7 @@ from math import nan
 from operator import attrgetter, itemgetter
 from typing import Any, Generic, TypeVar
 
-from rocking_cli.views.view import ABSENT, Table, number
+from rocking_cli.views.view import ABSENT, ASIDE, Table, number
 
 R = TypeVar("R")
 P = TypeVar("P")
@@ -80,6 +80,9 @@ class Column(Generic[R]):
         What the quantity is, for readers.
     text : bool
         Whether values are words: aligned to the left, and empty in files if they do not exist.
+    rank : int
+        Order in which columns leave a narrow terminal, the largest first; 0 for one that stays, `ASIDE` for one that
+        terminals show in full only.
     """
 
     key: str | None
@@ -90,6 +93,7 @@ class Column(Generic[R]):
     name: str | None = ""
     words: str = ""
     text: bool = False
+    rank: int = 0
 
     @property
     def heading(self) -> str:
@@ -111,7 +115,7 @@ class Column(Generic[R]):
 def only_shown(
     head: str | None, of: Callable[[R], Any], form: Callable[[Any], str] = plainly, unit: str = "", **how: Any
 ) -> Column[R]:
-    """Return a column that only terminals and pages have; `how` has `text` and `words`."""
+    """Return a column that only terminals and pages have; `how` has `text`, `words` and `rank`."""
     return Column(None, of, unit, head, form, None, **how)
 
 
@@ -121,7 +125,10 @@ def of_part(columns: Iterable[Column[P]], part: Callable[[R], P | None]) -> list
     def value_in(column: Column[P]) -> Callable[[R], Any]:
         return lambda row: None if (there := part(row)) is None else column.of(there)
 
-    return [only_shown(each.head, value_in(each), each.form, each.unit, text=each.text) for each in columns]
+    return [
+        only_shown(each.head, value_in(each), each.form, each.unit, text=each.text, rank=each.rank, words=each.words)
+        for each in columns
+    ]
 
 
 def text_columns(*heads: str) -> list[Column[Sequence[str]]]:
@@ -143,8 +150,8 @@ def data_of(columns: Iterable[Column[R]], row: R) -> dict[str, Any]:
     {'name': 'wall', 'p': 4}
     >>> frame_of([name, p, first], ["wall", "arch"])
     {'name': ['wall', 'arch'], 'p [rad/s]': [4, 4]}
-    >>> table_of("Structures", [name, p, first], ["wall"])
-    Table(title='Structures', columns=['', 'p', 'starts with'], rows=[['wall', '4', 'w']], numbers=[1, 2])
+    >>> table_of("Structures", [name, p, first], ["wall"]).rows
+    [['wall', '4', 'w']]
     >>> table_across("Structures", [p, first], ["one", "two"], ["wall", "arch"]).rows
     [['p', '4', '4', 'rad/s'], ['starts with', 'w', 'a', '']]
     """
@@ -161,7 +168,8 @@ def table_of(title: str, columns: Iterable[Column[R]], rows: Iterable[R]) -> Tab
     seen = [column for column in columns if column.head is not None]
     heads = [column.head or "" for column in seen]
     numbers = [k for k, column in enumerate(seen) if not column.text]
-    return Table(title, heads, [[column.cell(row) for column in seen] for row in rows], numbers)
+    cells = [[column.cell(row) for column in seen] for row in rows]
+    return Table(title, heads, cells, numbers, [column.rank for column in seen])
 
 
 def table_across(
@@ -175,12 +183,13 @@ def table_across(
 
     `after` has what follows in each line, by its heading.
     """
+    seen = [column for column in columns if column.head is not None]
     lines = [
-        [column.head, *(column.cell(row) for row in rows), *(text_of(column) for text_of in after.values())]
-        for column in columns
-        if column.head is not None
+        [column.head or "", *(column.cell(row) for row in rows), *(text_of(column) for text_of in after.values())]
+        for column in seen
     ]
-    return Table(title, ["", *heads, *after], lines, numbers=range(1, len(rows) + 1))
+    asides = [k for k, column in enumerate(seen) if column.rank == ASIDE]
+    return Table(title, ["", *heads, *after], lines, range(1, len(rows) + 1), asides=asides)
 
 
 def long_name(name: str) -> str:

@@ -36,9 +36,9 @@ SITE_UNITS_NOTE = "Numbers are in the unit in brackets."
 
 COLUMNS: tuple[Column[Mapping[str, Any]], ...] = (
     only_shown("field", itemgetter("field"), text=True),
-    only_shown("symbol", itemgetter("symbol"), text=True),
+    only_shown("symbol", itemgetter("symbol"), text=True, rank=1),
     only_shown("unit", itemgetter("unit"), text=True),
-    only_shown("bounds", itemgetter("bounds"), text=True),
+    only_shown("bounds", itemgetter("bounds"), text=True, rank=2),
     only_shown("default", lambda row: "required" if row["required"] else row["default"], str, text=True),
     only_shown("meaning", itemgetter("description"), text=True),
 )
@@ -64,7 +64,7 @@ INSTALLED: tuple[Column[InstalledMechanism], ...] = (
     Column("title", of("title")),
     Column("suits", of("suits")),
     only_shown("structures", of("meant_for"), text=True),
-    Column("package", of("package"), head="package", text=True),
+    Column("package", of("package"), head="package", text=True, rank=1),
 )
 CHECKS: tuple[Column[Verdict], ...] = (
     Column("check", of("check")),

@@ -112,7 +112,7 @@ def neighbour_columns(of: Callable[[R], Neighbours | None], *, doubtful: bool) -
     return [
         only_shown("neighbours\noverturn", cell(lambda near: percent(near.overturned))),
         only_shown("are\nunknown" if doubtful else None, cell(_unknown)),
-        only_shown("their\nmedian", cell(_median)),
+        only_shown("their\nmedian", cell(_median), rank=1),
     ]
 
 

@@ -14,7 +14,14 @@ if TYPE_CHECKING:
     from rocking_cli.excitation.base import GroundMotion
 
 ABSENT = "-"
+ASIDE = 9  # rank of a column, or of the line of a quantity, that terminals show in full only
 MAX_DETAILED_MOTIONS = 3  # motions or records with lines of their own; more are listed in a table
+
+
+class Aside(str):
+    """Sentence that terminals print in full only: an explanation of terms, or a note on the method."""
+
+    __slots__ = ()
 
 
 @dataclass(frozen=True)
@@ -30,13 +37,20 @@ class Table:
     rows : sequence of sequence of str
         Cells of each row.
     numbers : collection of int
-        Indices of columns that are aligned to the right; these and the first never wrap.
+        Indices of columns that are aligned to the right.
+    ranks : sequence of int
+        Rank of each column: if a terminal is too narrow, those with the largest leave first, and those with 0 never;
+        `ASIDE` for those shown in full only. By default all are 0.
+    asides : collection of int
+        Indices of rows that terminals show in full only.
     """
 
     title: str
     columns: Sequence[str]
     rows: Sequence[Sequence[str]]
     numbers: Collection[int] = ()
+    ranks: Sequence[int] = ()
+    asides: Collection[int] = ()
 
 
 @short_repr

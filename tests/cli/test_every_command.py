@@ -44,13 +44,13 @@ class Screens:
     """What a command shows on standard output and standard error, in a pipe (width 0) and on terminals."""
 
     def __init__(self, patch):
-        self.out, self.err = ({width: StringIO() for width in (0, *WIDTHS)} for _ in range(2))
+        self.out, self.err, self.short = ({width: StringIO() for width in (0, *WIDTHS)} for _ in range(3))
         self.inside, self.files = False, []
         for name in ("show", "sentence", "_say"):
             patch.setattr(terminal, name, self.everywhere(getattr(terminal, name)))
 
     def everywhere(self, shown):
-        """Show as asked, and then as text at every width; of what is shown within another, nothing more."""
+        """Show as asked, and then as text at every width, also in full; of what is shown within another, no more."""
 
         def also(*what, **how):
             if self.inside:
@@ -61,8 +61,10 @@ class Screens:
             for width, out in self.out.items():
                 with pytest.MonkeyPatch.context() as patch, redirect_stderr(self.err[width]):
                     patch.setenv("COLUMNS", str(width))
-                    patch.setattr(terminal, "_results", out)
-                    shown(*what, **dict.fromkeys(how, False))  # as_json, if anything
+                    for place, verbose in ((self.short[width], False), (out, True)):
+                        patch.setattr(terminal, "_results", place)
+                        patch.setattr(terminal, "asked", lambda switch, verbose=verbose: verbose)
+                        shown(*what, **dict.fromkeys(how, False))  # as_json, if anything
             self.inside = False
 
         return also
@@ -73,6 +75,7 @@ class Screens:
 
     def check(self):
         """All fits and nothing is lost; names harm nothing."""
+        assert all(fits(stream.getvalue(), width) for width, stream in self.short.items() if width)
         for streams in (self.out, self.err):
             whole, *narrow = (stream.getvalue() for stream in streams.values())
             assert not HARMFUL.search(whole)
@@ -107,8 +110,6 @@ def walked(line, **files):
     assert done.exit_code == 0 or isinstance(done.exception, SystemExit), done.exception
     assert not HARMFUL.search(done.stdout + done.stderr)
     assert screens.text() or command in PLAIN or "-o -" in line or done.exit_code
-    if command == "record" and "*" in line:  # only the table of several is laid out by the width
-        screens.out |= {width: StringIO(run(line, env={"COLUMNS": str(width)}).stdout) for width in WIDTHS}
     screens.check()
     made = sorted(set(Path().rglob("*")) - before)
     pictures = [file for file in made if file.suffix == ".svg"]

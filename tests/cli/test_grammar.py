@@ -83,7 +83,7 @@ def test_one_name_is_one_thing_in_every_command():
 
 def test_a_file_called_like_an_option_is_a_file(tmp_path):
     (tmp_path / "--pulse").write_bytes(Path(ACCEL).read_bytes())
-    assert "mean acceleration" in run("record", "--", "--pulse").stdout
+    assert "Arias intensity" in run("record", "--", "--pulse").stdout
 
 
 # Where a clean record goes

@@ -57,7 +57,7 @@ def test_every_option_reaches_the_question(name, ask):
     assert isinstance(made, Made) and (name in names() or name == "import")
     given, _ = ask(name, *needed(made))
     for option in made.params:
-        if not isinstance(option, click.Option) or option.name in ("as_json", "pulses"):
+        if not isinstance(option, click.Option) or option.name in ("as_json", "in_full", "pulses"):
             continue
         value = "odd.AT2" if option.name == "records" else "odd"
         words = [max(option.opts, key=len)] if option.is_flag else [max(option.opts, key=len), value]
@@ -72,9 +72,9 @@ def test_every_option_reaches_the_question(name, ask):
 
 
 @pytest.mark.parametrize("name", [name for name in commands() if name not in OTHERS])
-def test_pulses_are_motions_and_json_is_for_the_terminal(name, ask):
+def test_pulses_are_motions_and_json_and_all_are_for_the_terminal(name, ask):
     made = command(name)
-    assert "as_json" in {each.name for each in made.params}
+    assert {"as_json", "in_full"} <= {each.name for each in made.params}
     if "pulses" in {each.name for each in made.params}:
         given, _ = ask(name, *needed(made), "--pulse", "sine:0.4g:0.8s", "--pulse", "ricker:0.2g:1s")
         assert [each.period for each in given["motions"]] == [0.8, 1.0]

@@ -4,6 +4,7 @@ The results of all commands are in `test_every_command.py`.
 """
 
 import os
+import re
 import sys
 from collections import Counter
 
@@ -11,10 +12,12 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
+import rocking_cli as rk
 from rocking_cli.cli import terminal
 from rocking_cli.cli.layout import cells, grid, stacked, wrapped
 from rocking_cli.cli.main import main
 from rocking_cli.plugins.rooms import commands
+from rocking_cli.views.view import ASIDE, Table
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES
 
@@ -76,10 +79,37 @@ def test_a_pipe_gets_lines_as_they_are_and_so_do_programs(monkeypatch):
 def test_a_table_that_fits_is_one_and_another_is_stacked(monkeypatch):
     monkeypatch.setenv("COLUMNS", "40")
     assert "─" in run("record", ACCEL).stdout
-    text = run("mechanisms", "wall").stdout
+    text = run("mechanisms", "wall", "--all").stdout
     assert "─" not in text
     assert "field: height\n  symbol: 4h\n  unit: m\n  bounds: > 0, <= 1e+06\n" in text
     assert "  meaning: height between foot and top\n    support\n" in text
+
+
+RANKED = Table("", ["", "much", "more", "aside"], [["a", "11111", "22222", "333"], ["b", "1", "2", "3"]], range(1, 4),
+               [0, 1, 1, ASIDE], asides=[1])  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("width", "in_full", "words"),
+    [
+        (40, False, "much more a 11111 22222"), (40, True, "much more aside a 11111 22222 333 b 1 2 3"),
+        (14, False, "much a 11111 No room for more: use a wider terminal, or --all."),
+        (8, False, "a No room for much, more: use a wider terminal, or --all."),
+        (14, True, "a much 11111 more 22222 aside 333 b much 1 more 2 aside 3"),
+    ],
+)  # fmt: skip
+def test_the_least_important_columns_leave_first_and_are_named(width, in_full, words, monkeypatch, capsys):
+    monkeypatch.setenv("COLUMNS", str(width))
+    assert terminal.table(RANKED, in_full=in_full) == (not in_full)
+    assert re.sub("[─:]", " ", capsys.readouterr().out).split() == words.replace(":", " ").split()
+
+
+def test_what_only_explains_is_shown_with_all_alone(monkeypatch):
+    short, whole = (run("error", FRAME, *more) for more in ((), ("--all",)))
+    explained = [line for line in whole.stdout.splitlines() if line not in short.stdout.splitlines()]
+    assert short.stdout != whole.stdout and explained[0].startswith("Kappa2 agrees (uplift acceleration kept, ")
+    assert "--all shows more" in short.stderr and "--all" not in whole.stderr
+    assert rk.error(FRAME).sentences == [line for line in whole.stdout.splitlines() if line.endswith(".")]
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="pseudo-terminals are of POSIX")

@@ -426,7 +426,7 @@ def test_printing_from_other_threads_is_kept_out_of_the_results():
         "    thread = threading.Thread(target=print, args=('noise',)); thread.start(); thread.join()\n"
         "    with terminal.results_only():\n"
         "        print('noise'); terminal.result('inner')\n"
-        "    print('noise'); terminal.print_json({'a': 1}); terminal.table('t', ['x'], [['y']])\n"
+        "    print('noise'); terminal.print_json({'a': 1}); terminal.sentence('t')\n"
         "print('after')\n"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

@@ -15,7 +15,7 @@ from rocking_cli.names import percent
 from rocking_cli.questions.calibrate.study import MAX_RESIDUAL_TO_NOISE, MIN_GAP_RATIO, Estimated, TraceFit
 from rocking_cli.structure import Structure
 from rocking_cli.views.column import Column, of, only_shown, rounded, table_of
-from rocking_cli.views.view import Table, View, heading
+from rocking_cli.views.view import Aside, Table, View, heading
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -53,24 +53,25 @@ def trace_columns(found: TraceFit) -> dict[str, list[float]]:
 
 def _trace_parts(found: TraceFit, structure: Structure) -> Iterator[Table | str]:
     trace, count = found.trace, len(found.etas)
+    slenderness = structure.model("nonlinear").scatter.slenderness
+    geometry = f"{percent(slenderness)} of slenderness (`uncertainty`)" if found.p is None else "that of p and alpha"
+    pooled = found.pooled
+    low, high = pooled.interval
+    yield (
+        f"Restitution eta = {found.eta.value:.4f}, the weighted mean of the impacts. Its standard deviation is "
+        f"{found.eta.deviation:.2g}; neighbours should draw {pooled.scatter:.2g}."
+    )
     yield (
         f"{Path(trace.name).name}: {trace.times.size} samples over {trace.times[-1] - trace.times[0]:.4g} s, fitted "
         f"from {found.part[0]:.4g} s, where the structure falls, to {found.part[1]:.4g} s. "
         f"{heading(structure.mechanism)}, let go at {degrees(found.release):.4g} deg at {found.release_time:.4g} s. "
         f"{count} impacts are seen above the noise of {degrees(found.noise):.2g} deg."
     )
-    slenderness = structure.model("nonlinear").scatter.slenderness
-    geometry = f"{percent(slenderness)} of slenderness (`uncertainty`)" if found.p is None else "that of p and alpha"
-    yield (
-        f"Restitution eta = {found.eta.value:.4f}, the weighted mean of the impacts. Its standard deviation is "
-        f"{found.eta.deviation:.2g}: that of noise, of the scatter over some {count} impacts, and of {geometry}."
-    )
-    pooled = found.pooled
-    low, high = pooled.interval
-    yield (
+    yield Aside(f"The deviation is that of noise, of the scatter over some {count} impacts, and of {geometry}.")
+    yield Aside(
         f"From impact to impact eta scatters by {pooled.seen:.2g}, the last one left out; 5 to 95 %: {low:.2g} to "
-        f"{high:.2g}. Neighbours should draw {pooled.scatter:.2g}, which is drawn towards {MEASURED_SPREAD:g}, the "
-        "scatter of bodies whose restitution was measured: few impacts do not show that there is none."
+        f"{high:.2g}. What neighbours should draw is drawn towards {MEASURED_SPREAD:g}, the scatter of bodies whose "
+        "restitution was measured: few impacts do not show that there is none."
     )
     if found.sides is not None:
         yield (
@@ -86,7 +87,8 @@ def _trace_parts(found: TraceFit, structure: Structure) -> Iterator[Table | str]
         )
     pairs = zip(found.impacts, found.etas, strict=True)
     yield table_of("", IMPACTS, [ImpactRow(k, *pair) for k, pair in enumerate(pairs, 1)])
-    yield (f"At rest, the trace reads {_pair(found.offset)} deg at time zero and drifts by {_pair(found.drift)} deg/s.")
+    rest = f"{_pair(found.offset)} deg at time zero and drifts by {_pair(found.drift)} deg/s"
+    yield Aside(f"At rest, the trace reads {rest}.")
     yield _residuals(found)
 
 

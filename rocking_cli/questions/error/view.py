@@ -16,7 +16,7 @@ from rocking_cli.names import percent
 from rocking_cli.questions.error.study import Errors, Linearisation, errors, preferred, velocity_ratios
 from rocking_cli.views.column import Column, of, only_shown, table_of
 from rocking_cli.views.verdict import uplift_in_words
-from rocking_cli.views.view import ABSENT, View, heading
+from rocking_cli.views.view import ABSENT, Aside, View, heading
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -97,7 +97,7 @@ def view(
     mechanism: Mechanism, equivalence: Equivalence, curves: Sequence[Linearisation], asked: Sequence[Linearisation]
 ) -> View:
     """Show the errors at the given values, and a verdict that also uses the curves."""
-    verdict = trust(list(curves), list(asked))
+    advice, numbers, *ranges = sentences(list(curves), list(asked))
     data = {
         "mechanism": mechanism.mechanism,
         "name": mechanism.name,
@@ -105,12 +105,12 @@ def view(
         "directions": {each.direction.label: _data(each, mechanism.gravity) for each in asked},
         "prefer": PREFERRED_KAPPA[preferred(list(asked))],
         "grades": {f"kappa{kappa}": errors(list(asked), kappa).grade.key for kappa in (1, 2)},
-        "verdict": verdict,
+        "verdict": trust(list(curves), list(asked)),
     }
     title = heading(mechanism)
     titles = [title] if len(asked) == 1 else [f"{title}, {each.direction.label} direction" for each in asked]
     tables = [table_of(where, ERRORS, rows(each, mechanism.gravity)) for where, each in zip(titles, asked, strict=True)]
-    return View(data, [*tables, verdict])
+    return View(data, [advice, *tables, Aside(numbers), *ranges])
 
 
 def rows(each: Linearisation, gravity: float) -> Iterator[ErrorRow]:
@@ -140,7 +140,12 @@ def _data(each: Linearisation, gravity: float) -> dict[str, Any]:
 
 
 def trust(curves: Sequence[Linearisation], asked: Sequence[Linearisation]) -> str:
-    """Say which kappa to use, what error to expect, and when to use the nonlinear history instead.
+    """Return the sentences on which kappa to use as one text."""
+    return " ".join(sentences(curves, asked))
+
+
+def sentences(curves: Sequence[Linearisation], asked: Sequence[Linearisation]) -> list[str]:
+    """Say which kappa to use, or the nonlinear history instead; then which errors to expect, and over which ranges.
 
     Parameters
     ----------
@@ -151,8 +156,8 @@ def trust(curves: Sequence[Linearisation], asked: Sequence[Linearisation]) -> st
 
     Returns
     -------
-    str
-        Some sentences; of two directions the larger error counts.
+    list of str
+        The sentences; of two directions the larger error counts.
     """
     prefer = preferred(asked)
     order = (1, 2) if prefer == 1 else (2, 1)
@@ -161,16 +166,12 @@ def trust(curves: Sequence[Linearisation], asked: Sequence[Linearisation]) -> st
     accelerations = ", ".join(f"{a:g}" for a in asked[0].acceleration.tolist())
     worse = ", in the worse of the two directions" if len(asked) > 1 else ""
     where = f"At phi/phi_cr = {amplitudes} and {accelerations} times the uplift acceleration{worse}"
-    sentences = [f"{where}: {one}; {two}."]
-    if prefer is None:
-        sentences.append("Rely on neither at these amplitudes: use the nonlinear time history of `rocking respond`.")
-    elif prefer == 0:
-        sentences.append("Either kappa is adequate at these amplitudes.")
-    else:
-        sentences.append(f"Prefer kappa{prefer} at these amplitudes.")
+    history = "the nonlinear time history of `rocking respond`"
+    advice = {None: f"rely on neither kappa: use {history}", 0: "either kappa is adequate"}
+    sentence = f"{where}, {advice.get(prefer, f'prefer kappa{prefer}')}."
     if prefer is not None and min(errors(asked, kappa).grade for kappa in (1, 2)) is Grade.ESTIMATE:
-        sentences.append("Base decisions on the nonlinear time history of `rocking respond`.")
-    return " ".join([*sentences, *_ranges(curves, order[0])])
+        sentence += f" Base decisions on {history}."
+    return [sentence, f"{one[0].upper()}{one[1:]}; {two}.", *_ranges(curves, order[0])]
 
 
 def _on(kappa: int, found: Errors) -> str:

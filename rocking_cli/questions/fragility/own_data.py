@@ -259,7 +259,11 @@ def _view(found: FittedFragility) -> View:
     parts += without_logarithm(found.measure, found.left_out)
     parts += warnings_of([found.curve])
     # What a study has in common is a record; here it may be anything.
-    return View(_data(found), [each.replace("record", "cluster") if isinstance(each, str) else each for each in parts])
+    return View(_data(found), [_of_clusters(each) for each in parts])
+
+
+def _of_clusters(part: Table | str) -> Table | str:
+    return type(part)(part.replace("record", "cluster")) if isinstance(part, str) else part
 
 
 def _in_short(found: FittedFragility) -> str:

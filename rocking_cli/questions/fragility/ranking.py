@@ -300,13 +300,13 @@ def with_rankings(shown: View, rankings: Sequence[Ranking]) -> View:
 def _parts(ranking: Ranking) -> Iterator[Table | str]:
     """Yield a table of the measures of a structure, and sentences on it."""
     yield ""
+    yield " ".join(judge(ranking))
     if ranking.measures:
         columns = [*COLUMNS, *(_entry("trends", name, f"p\n{name}", 2) for name in ranking.against)]
         for limit in ranking.measures[0].dispersions:
             head = "\n".join(["dispersion", *wrap(limit_name(limit), MAX_HEADING_WIDTH)])
             columns.append(_entry("dispersions", limit, head, 3))
         yield table_of(f"{ranking.structure}: which measure predicts best", columns, ranking.measures)
-    yield " ".join(judge(ranking))
     if ranking.alike:
         yield "; ".join(f"{name} ranks equal to {other}" for name, other in ranking.alike.items()) + "."
     for name, why in ranking.left_out.items():

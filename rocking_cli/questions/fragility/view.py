@@ -13,11 +13,11 @@ import numpy as np
 
 from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.names import UNKNOWN, percent
-from rocking_cli.questions.fragility.definition import UPLIFT_MEASURE
+from rocking_cli.questions.fragility.definition import OVERTURNING, UPLIFT_MEASURE
 from rocking_cli.studies.fragility.quantities import kept, label, metres
 from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
 from rocking_cli.views.engines import ALL_EXACT, BLOCKS_FAILED, blocks_in_words
-from rocking_cli.views.view import Table, View, number
+from rocking_cli.views.view import Aside, Table, View, number
 
 if TYPE_CHECKING:  # avoids importing scipy, which only fits need
     from pathlib import Path
@@ -143,7 +143,8 @@ def view(
     of_them = [f"{doubtful:,} of {UNKNOWN} outcome"] if doubtful else []
     of_them += [f"{by_blocks:,} with free blocks"] if by_blocks else []
     counts = f"{finished:,} runs{so_far}" + (f" ({', '.join(of_them)})" if of_them else "")
-    parts: list[Table | str] = [f"{name}: {definition.method}, {records}, {counts}, seed {definition.seed}"]
+    parts: list[Table | str] = [half(each) for each in curves if each.limit == OVERTURNING]
+    parts.append(f"{name}: {definition.method}, {records}, {counts}, seed {definition.seed}")
     parts += sets_in_words(plan)
     interval = f"{100 * definition.confidence:g} %"
     for (structure, measure), these in _grouped(curves, "measure").items():
@@ -191,6 +192,27 @@ def view(
         "surfaces": [_data(each, plane_columns(), {"measures": list(each.measures)}) for each in surfaces],
     }
     return View(data, parts)
+
+
+def half(found: Fragility) -> str:
+    """Say at which intensity half of the motions overturn a structure, twice if runs have an unknown outcome."""
+    measure, _, unit = label(found.measure).removesuffix("]").partition(" [")
+    ends = [found, found.lower] if found.is_band and found.lower is not None else [found]
+
+    def at(each: Fragility) -> str:
+        median, curve = each.median, each.curve
+        if median is None or senseless(curve):
+            return f"at no known {measure}"
+        end = f" {unit}" * bool(unit)
+        most = f"{end} or more" if isinf(median.high) else f" to {median.high:.3g}{end}"
+        interval = f"{100 * curve.confidence:g} %: {median.low:.3g}{most}" if median.low < median.high else "exact"
+        within = each.seen.x.min() <= median.value <= each.seen.x.max()
+        return f"at {measure} {median.value:.3g}{end} ({interval})" + ("" if within else ", outside the levels tried")
+
+    first, *others = map(at, ends)
+    if others:
+        first = f"{first}, if runs of unknown outcome overturn, and {others[0]}, if they do not"
+    return f"{found.structure}: 50 % overturn {first}."
 
 
 def _grouped(fits: Sequence[Fitted], over: str) -> dict[tuple[str, Any], list[Fitted]]:
@@ -247,7 +269,8 @@ def fits_in_words(
     yield ""
     yield table_of(title, columns, shown)
     for name, each in shown:
-        yield f"{name}: {each.fitted.why}.{_remarks(each)}"
+        yield (Aside if _is_sound(each) else str)(f"{name}: {each.fitted.why}.")
+        yield from (type(remark)(f"{name}: {remark}") for remark in _remarks(each))
     yield from undecided(found, capacities=capacities)
     yield from without_logarithm(over, found[0].left_out)
     yield from warnings_of([each.fitted for _, each in shown])
@@ -346,23 +369,31 @@ def cut_of(found: Fragility) -> Cut | None:
     return found.curve.cut(np.geomspace(least, most, CUT_POINTS))
 
 
-def _remarks(found: Fragility | Bivariate) -> str:
+def _is_sound(found: Fragility | Bivariate) -> bool:
+    """Whether nothing speaks against a curve: it is exact, or it is bounded and no test rejects it."""
+    curve = getattr(found, "curve", None)  # which surfaces lack
+    return curve is not None and (
+        curve.is_exact or (curve.fit is not None and not curve.rejected and curve.fit.intervals[1].low > 0)
+    )
+
+
+def _remarks(found: Fragility | Bivariate) -> Iterator[str]:
     """Say that a dispersion makes no sense, by which limit state a curve is cut, and how often it is exceeded."""
     from rocking_cli.questions.fragility.assess import Fragility
 
     if not isinstance(found, Fragility):
-        return ""
-    words, rate = senseless(found.curve), found.rate
+        return
+    if words := senseless(found.curve):
+        yield words.strip()
     if (cut := cut_of(found)) is not None:
         of = f"that of {limit_name(cut.by)}, which it implies"
         by = "lambda, up to which nothing uplifts" if cut.by == UPLIFT_MEASURE else of
-        words += f" Curve and band are cut by {by}: by up to {cut.most:.2g} at {cut.at:.3g}."
-    if rate is not None and rate.rate > 0:
-        words += (
-            f" Exceeded once in {rate.return_period:,.0f} years (annual rate {rate.low:.3g} to {rate.high:.3g}), "
+        yield Aside(f"Curve and band are cut by {by}: by up to {cut.most:.2g} at {cut.at:.3g}.")
+    if (rate := found.rate) is not None and rate.rate > 0:
+        yield (
+            f"Exceeded once in {rate.return_period:,.0f} years (annual rate {rate.low:.3g} to {rate.high:.3g}), "
             f"{100 * rate.in_50_years:.2g} % in 50 years."
         )
-    return words
 
 
 def limit_name(limit: Limit) -> str:

@@ -64,13 +64,13 @@ def _at_level(find: Callable[..., float | None], level: float) -> Callable[[_Lin
 
 COLUMNS: tuple[Column[_Line], ...] = (
     only_shown("motion", of("name"), text=True),
-    only_shown("PGA\n[g]", of("pga")),
-    only_shown("uplift\nat", of("uplift")),
+    only_shown("PGA\n[g]", of("pga"), rank=4),
+    only_shown("uplift\nat", of("uplift"), rank=5),
     only_shown("overturn\nat 1", of("share"), percent),
-    *(only_shown(f"{percent(level)}\nfirst\nat", _at_level(Margin.first, level), rounded(3)) for level in SHARE_LEVELS),
     *(
-        only_shown(f"{percent(level)}\nalways\nfrom", _at_level(Margin.always, level), rounded(3))
-        for level in SHARE_LEVELS
+        only_shown(f"{percent(level)}\n{words}", _at_level(find, level), rounded(3), rank=rank)
+        for words, find, ranks in (("first\nat", Margin.first, (0, 1, 1)), ("always\nfrom", Margin.always, (2, 3, 3)))
+        for level, rank in zip(SHARE_LEVELS, ranks, strict=True)
     ),
 )
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import click
 
 from rocking_cli.cli import terminal
-from rocking_cli.cli.help import Command, as_json
+from rocking_cli.cli.help import Command, as_json, in_full
 from rocking_cli.errors import named
 from rocking_cli.views.column import Column, data_of, of, only_shown, table_of
 from rocking_cli.views.view import View
@@ -56,10 +56,10 @@ COLUMNS: tuple[Column[InstalledMeasure], ...] = (
     Column("unit", of("unit")),
     only_shown("unit", lambda each: each.unit or None, text=True),
     Column("power", of("power")),
-    only_shown("scales with", _power, text=True),
+    only_shown("scales with", _power, text=True, rank=1),
     Column("title", of("title")),
     only_shown("description", lambda each: each.title or "(cannot be loaded)", text=True),
-    Column("package", of("package"), head="package", text=True),
+    Column("package", of("package"), head="package", text=True, rank=2),
     Column("relative", of("relative")),
     Column("source", of("source")),
 )
@@ -79,8 +79,9 @@ def view(found: Sequence[InstalledMeasure]) -> View:
 
 
 @click.command(cls=Command, short_help="List the installed intensity measures.")
+@in_full
 @as_json
-def command(as_json: bool) -> None:
+def command(as_json: bool, in_full: bool) -> None:
     """List the installed intensity measures: their form, unit and dependence on the scale factor of a record.
 
     `rocking record --measures` computes them for records. In fragility studies, `measures`, `levels`, `bivariate` and

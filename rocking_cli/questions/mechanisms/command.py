@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from rocking_cli.cli import terminal
-from rocking_cli.cli.help import MECHANISMS, Command, as_json, completer
+from rocking_cli.cli.help import MECHANISMS, Command, as_json, completer, in_full
 from rocking_cli.errors import InputError, MechanismError, RockingError
 from rocking_cli.io.files import check_writable
 
@@ -37,8 +37,11 @@ TEMPLATE_CHECK = "The file that `rocking new` prints is a structure."
     "--plot", metavar="FILE.png", type=click.Path(path_type=Path), shell_complete=completer("file"),
     help="Draw all mechanisms, small, to choose one (.png, .svg or .pdf).",
 )  # fmt: skip
+@in_full
 @as_json
-def command(name: str | None, file: str | None, checked: bool, plot: Path | None, as_json: bool) -> None:
+def command(
+    name: str | None, file: str | None, checked: bool, plot: Path | None, as_json: bool, in_full: bool
+) -> None:  # fmt: skip
     """List the installed mechanisms and the structures that each suits; with NAME, show the fields of one.
 
     NAME may also be `loads`, `ties`, `stops`, `interlock`, `strength`, `crushing` or `uncertainty`, which can be added

@@ -19,7 +19,7 @@ from rocking_cli.studies.under_pulses import PulsedModel
 from rocking_cli.views.column import only_shown, rounded, table_of
 from rocking_cli.views.engines import BLOCKS_FAILED, engines_in_words
 from rocking_cli.views.verdict import INVALID_REASON, unchecked
-from rocking_cli.views.view import ABSENT, Table, View, number
+from rocking_cli.views.view import ABSENT, Aside, Table, View, number
 
 MAX_TABLE_ROWS = 9  # rows of a table; --out and --json have the whole curves
 SOURCES = {"run": " (given for this run)", "given": ""}
@@ -59,9 +59,10 @@ def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionles
     ]
     shares = ", ".join(f"{region.label} {100 * share:.1f} %" for region, share in found.shares.items() if share)
     parts: list[Table | str] = [
+        _smallest(found, unit, dimensionless=dimensionless),
         f"{map_title(found)}{source_of(found.structure)}: amplitudes {amplitude} against {what}",
         table_of("", columns, spaced(len(across))),
-        f"Shares of the points of the map, which depend on the ranges of its axes: {shares}.",
+        Aside(f"Shares of the points of the map, which depend on the ranges of its axes: {shares}."),
     ]
     if some_unknown:
         why = INVALID_REASON if found.structure.engine.name == "exact" else BLOCKS_FAILED
@@ -74,10 +75,6 @@ def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionles
             "No pulse on the map causes uplift: the amplitude of the strongest is "
             f"{found.a.max():.4g} times the uplift acceleration."
         )
-    step = unit * np.diff(found.a).max()
-    parts.append(
-        f"Amplitudes are read from the map, whose steps are at most {step:.2g}{'' if dimensionless else ' g'}."
-    )
     if not np.isnan(found.safe_again).all():
         parts.append(
             "Stronger is not always worse: 'survives again at' is the largest amplitude that does not overturn the "
@@ -88,6 +85,33 @@ def map_view(found: OverturningMap, mechanism: Mechanism | None, *, dimensionles
         parts += engines_in_words(found.structure.engine.name, by_blocks, mechanism, off_edge)
         parts += _joints([found.structure], [mechanism])
     return View(_map_data(found, mechanism, dimensionless=dimensionless), parts)
+
+
+def _smallest(found: OverturningMap, unit: float, *, dimensionless: bool) -> str:
+    """Say which amplitude on a map is the smallest that overturns, or may, and if a smaller one may be beyond it."""
+    name, sign, end, of, across = found.structure.name, "a_g", " g", "T", found.periods
+    if dimensionless:
+        name, sign, end, of, across = f"the {name}", "a", "", "omega", found.omega
+    least, doubtful = found.least(*FALLS), found.least(Region.UNKNOWN)
+
+    def at(k: int) -> str:
+        return f"{of} = {across[k]:.3g}{'' if dimensionless else ' s'}"
+
+    def smallest(curve: Reals) -> str:
+        last, places = curve.size - 1, np.flatnonzero(curve == np.nanmin(curve)).tolist()
+        k = next((k for k in places if k in (0, last)), places[0])
+        edge = k in (0, last) or curve[k] == found.a[0]
+        step = f"{unit * curve[k]:.3g}{end} (in steps of at most {unit * np.diff(found.a).max():.2g}{end}), at {at(k)}"
+        return f"{step}, the edge of the map: beyond it, less may do." if edge else f"{step}."
+
+    known, may = (not np.isnan(curve).all() for curve in (least, doubtful))
+    sentences = [f"The smallest {sign} on the map that overturns {name} is {smallest(least)}"] if known else [
+        f"No pulse on the map {'is known to overturn' if may else 'overturns'} {name}, up to "
+        f"{unit * found.a[-1]:.3g}{end}, from {at(0)} to {at(-1)}."
+    ]  # fmt: skip
+    if may and not (known and np.nanmin(least) <= np.nanmin(doubtful)):
+        sentences.append(f"The smallest {sign} whose outcome is unknown is {smallest(doubtful)}")
+    return " ".join(sentences)
 
 
 def map_title(found: OverturningMap) -> str:
@@ -189,7 +213,7 @@ def spaced(count: int, most: int = MAX_TABLE_ROWS) -> list[int]:
 
 def comparison_view(found: Comparison, mechanisms: Sequence[Mechanism]) -> View:
     """Show the least amplitudes that overturn each of several structures, and which overturns first."""
-    firsts = _firsts(found)
+    firsts, shown = _firsts(found), spaced(found.periods.size)
 
     def first(k: int) -> str | None:
         if found.undecided[k]:
@@ -204,10 +228,7 @@ def comparison_view(found: Comparison, mechanisms: Sequence[Mechanism]) -> View:
         ),
         only_shown("overturns first", first, text=True),
     ]
-    parts: list[Table | str] = [
-        f"Least a_g [g] that overturns: {comparison_title(found)}",
-        table_of("", columns, spaced(found.periods.size)),
-    ]
+    parts: list[Table | str] = [table_of(f"Least a_g [g] that overturns: {comparison_title(found)}", columns, shown)]
     counts = Counter(tuple(together) for together in firsts if together)
     shares = [
         f"{' and '.join(tied)}{' together' * (len(tied) > 1)} at {percent(counts[tied] / len(firsts))}"
@@ -216,7 +237,7 @@ def comparison_view(found: Comparison, mechanisms: Sequence[Mechanism]) -> View:
     if found.undecided.any():
         shares.append(f"{UNKNOWN} at {percent(float(found.undecided.mean()))}")
     if shares:
-        parts.append(f"Overturned by the smallest amplitude: {', '.join(shares)} of the periods.")
+        parts.insert(0, f"Overturned by the smallest amplitude: {', '.join(shares)} of the periods.")
     if found.doubtful.any():
         parts.append(
             "Two numbers: the smallest amplitude whose outcome is unknown, as a joint opens or slides so far that the "

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from math import nan, pi
 from operator import itemgetter
@@ -18,9 +18,8 @@ from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.names import percent
+from rocking_cli.questions.pulse.view import CLOSED as OF_CLOSED
 from rocking_cli.questions.pulse.view import (
-    CONDITIONS,
-    YES_NO,
     after_impacts,
     closed_data,
     how_far_off,
@@ -34,12 +33,12 @@ from rocking_cli.studies.contact import Contacts
 from rocking_cli.studies.engines import follow
 from rocking_cli.studies.response import Histories, concluded
 from rocking_cli.views.cautions import of_bounds
-from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
+from rocking_cli.views.column import Column, data_of, of, of_part, only_shown, rounded, table_across, table_of
 from rocking_cli.views.conclusion import conclusion_data
 from rocking_cli.views.response import known_data, model_heads, not_checked, pulse_data
 from rocking_cli.views.restitution import restitution_data, restitution_used
 from rocking_cli.views.verdict import NO_JOINTS, ends, joints_in_words, uplift_in_words
-from rocking_cli.views.view import Table, View, heading, in_degrees, number
+from rocking_cli.views.view import Aside, Table, View, heading, in_degrees
 
 KAPPAS: dict[ModelName, Literal[1, 2]] = {"linear1": 1, "linear2": 2}
 
@@ -185,17 +184,10 @@ class _Beside(NamedTuple):
     exact: ExactResponse
 
 
-def _condition(place: int, name: str) -> Column[_Beside]:
-    return only_shown(f"condition {place}", lambda each: each.closed.conditions[name], YES_NO.__getitem__)
-
-
 CLOSED: tuple[Column[_Beside], ...] = (
-    only_shown("D0* (Eq. 42)", of("closed.D0"), number),
-    only_shown("max ratio (Eq. 41)", of("closed.max_ratio"), number),
-    only_shown("  minus exact first rebound", lambda each: each.closed.off(each.exact.first_rebound), rounded(3)),
-    only_shown("  minus exact peak", lambda each: each.closed.off(each.exact.peak_ratio), rounded(3)),
-    only_shown("overturns after one impact", of("closed.overturns"), YES_NO.__getitem__),
-    *(_condition(place, name) for place, name in enumerate(CONDITIONS, start=1)),
+    *of_part(OF_CLOSED, of("closed")),
+    only_shown("minus exact first rebound", lambda each: each.closed.off(each.exact.first_rebound), rounded(3)),
+    only_shown("minus exact peak", lambda each: each.closed.off(each.exact.peak_ratio), rounded(3)),
 )
 EXACT = {True: "exact", False: "sampled"}
 
@@ -244,20 +236,23 @@ def view(
     }
     sides = {"both": seen["positive"]} if equivalence.symmetric else seen
     rows = [{"direction": label, **values} for label, values in sides.items()]
-    parts: list[Table | str] = [table_of(f"{heading(mechanism)}, {pulse}", DIRECTIONS, rows)]
+    titles = {sign: f"Polarity {sign}: {'as given' if sign > 0 else 'reversed'}" for sign in answers}
+    parts: list[Table | str] = [
+        f"{f'{titles[sign]}. ' * (len(answers) > 1)}{_verdict(by_model, mechanism)}"
+        for sign, by_model in answers.items()
+    ]
+    parts.append(table_of(f"{heading(mechanism)}, {pulse}", DIRECTIONS, rows))
     for sign, by_model in answers.items():
-        title = f"Polarity {sign}: {'as given' if sign > 0 else 'reversed'}"
-        parts += ["", _answer_table(title, by_model), _verdict(by_model, mechanism)]
+        parts += ["", _answer_table(titles[sign], by_model)]
     unfit = uplift_error(equivalence)
     if grade(unfit) is Grade.DISREGARD:
         parts.append(f"Disregard linear1: its uplift acceleration is {uplift_in_words(unfit)}.")
-    parts.append("")
     if not closed:
-        parts.append(_why_no_closed_form(mechanism, pulse))
+        parts.append(Aside(_why_no_closed_form(mechanism, pulse)))
     elif any(form.conditions["uplift"] for form in closed.values()):
         parts += _closed_parts(closed, exact)
     else:
-        parts.append(f"No closed form: by the equivalent blocks, the structure {names.NO_UPLIFT} (a <= 1).")
+        parts.append(Aside(f"No closed form: by the equivalent blocks, the structure {names.NO_UPLIFT} (a <= 1)."))
     runs = [run for each in answers.values() for run in map(outcome, each.values()) if isinstance(run, History)]
     parts += [f"Caution: {text}" for text in of_bounds(mechanism)]
     return View(data, [*parts, restitution_used(structure), *not_checked(mechanism, runs)])
@@ -320,7 +315,8 @@ def _over_nonlinear(answer: Answer, answers: Mapping[str, Answer]) -> float:
 def _answer_table(title: str, answers: Mapping[str, Answer]) -> Table:
     unknown = any(outcome(each).unknown for each in answers.values())
     heads = model_heads(answers, unknown=unknown)
-    return table_across(title, _columns(answers, unknown=unknown), heads, list(answers.values()))
+    table = table_across(title, _columns(answers, unknown=unknown), heads, list(answers.values()))
+    return replace(table, ranks=[0, *(3 - KAPPAS[name] if name in KAPPAS else 0 for name in answers), 0])
 
 
 def _verdict(answers: Mapping[str, Answer], mechanism: Mechanism) -> str:
@@ -349,11 +345,10 @@ def _verdict(answers: Mapping[str, Answer], mechanism: Mechanism) -> str:
 def _closed_parts(closed: Mapping[str, ClosedForm], exact: Mapping[str, ExactResponse]) -> Iterator[Table | str]:
     """Yield the closed form, its conditions, and a sentence on how far to trust it."""
     rows = [_Beside(form, exact[name]) for name, form in closed.items()]
-    yield table_across("Closed form of a full sine", CLOSED, list(closed), rows, {})
-    for place, condition in enumerate(CONDITIONS.values(), start=1):
-        yield f"{place}: {condition}"
+    table = table_across("Closed form of a full sine", CLOSED, list(closed), rows, {"meaning": of("words")})
+    yield replace(table, asides=range(len(table.rows)))
     for name, form in closed.items():
-        yield f"{name}: {_trust(form, exact[name])}"
+        yield Aside(f"{name}: {_trust(form, exact[name])}")
 
 
 def _trust(closed: ClosedForm, exact: ExactResponse) -> str:

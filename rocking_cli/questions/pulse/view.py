@@ -12,7 +12,7 @@ from rocking_cli.dynamics.exact import ClosedForm, ExactResponse
 from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.names import percent
 from rocking_cli.views.column import Column, data_of, of, only_shown, table_across
-from rocking_cli.views.view import ABSENT, Table, View, number
+from rocking_cli.views.view import ABSENT, ASIDE, Aside, Table, View, number
 
 R = TypeVar("R")
 CONDITIONS = {
@@ -20,9 +20,11 @@ CONDITIONS = {
     "first_impact_after_pulse": "the first impact comes after the pulse",
     "no_overturning_without_impact": "the block does not overturn before its first impact",
 }
-LINEAR_BLOCK = (
+LINEAR_BLOCK = Aside(
     "The linear block is the equivalent block of any structure: a = a_g/(g lambda), omega = omega_g/p, tau = p t."
 )
+IN_WORDS = {"  overturns", "  impacts"}
+"""Headings of what the first sentence has."""
 YES_NO = {True: "yes", False: "no", None: ABSENT}
 
 
@@ -42,7 +44,7 @@ CLOSED: tuple[Column[ClosedForm], ...] = (
 def _exact(
     key: str, value: Callable[[ExactResponse], Any], head: str, words: str = "", form: Callable[[Any], str] = number
 ) -> Column[ExactResponse]:
-    return Column(key, value, "", head, form, words=words)
+    return Column(key, value, "", head, form, words=words, rank=ASIDE * (head in IN_WORDS))
 
 
 EXACT: tuple[Column[ExactResponse], ...] = (
@@ -72,8 +74,10 @@ def view(shape: str, a: float, omega: float, eta: float, closed: ClosedForm | No
     title = "Full sine" if shape == "sine" else shape.replace("_", " ").capitalize()
     table = _table(f"{title} pulse: a = {a:g}, omega = {omega:g}, eta = {eta:g}", EXACT, exact)
     if closed is not None:
-        table = replace(table, rows=[*_table("", CLOSED, closed).rows, *table.rows])
-    return View(data, [table, _verdict(a, closed, exact), LINEAR_BLOCK])
+        rows = [*_table("", CLOSED, closed).rows, *table.rows]
+        more = len(rows) - len(table.rows)  # of the closed form
+        table = replace(table, rows=rows, asides=[*range(more), *(more + k for k in table.asides)])
+    return View(data, [_verdict(a, closed, exact), table, LINEAR_BLOCK])
 
 
 def _table(title: str, columns: Sequence[Column[R]], found: R) -> Table:

@@ -40,8 +40,8 @@ class RecordAsked(UnderMotions, Correcting):
 
     The measures are those of the scaled record, exact for straight lines between its samples. Drifts, offsets, clipped
     peaks, coarse sampling and implausible units are reported as warnings, with the number that reveals them. With
-    several files, or both polarities, each record is a column on a terminal and a row in a pipe; as JSON, each is one
-    object on a line of its own. A file that cannot be used is reported and skipped, and the exit code is 5.
+    several files, or both polarities, each record is a row of a table; as JSON, each is one object on a line of its
+    own. A file that cannot be used is reported and skipped, and the exit code is 5.
 
     FILE may be delimited text or in the format of a data centre, also in a gzip file or zip archive; - is standard
     input. If there are several columns, channels or files in an archive, choose a channel; without it they are listed.

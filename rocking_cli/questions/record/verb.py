@@ -130,7 +130,7 @@ def record(asked: RecordAsked, watch: Watcher) -> RecordAnswer | Answers[RecordA
     if several:
         kept = {"spectrum": partial(spectra_table, _spectra(examined))} if spectrum else {}
         figure = drawn(SPECTRA, _spectra(examined)) if spectrum else None
-        answer = answers("records", "motion", by_name, list(parts(examined, 100)), figure, kept)
+        answer = answers("records", "motion", by_name, list(parts(examined)), figure, kept)
     if isinstance(asked.spectrum, Path):
         write_rows(asked.spectrum, [answer.tables["spectrum"]()], watch)
     if asked.plot is not None:
@@ -175,14 +175,12 @@ def _examine(
 
 
 def _answer(examined: Sequence[Examined], scaled: Sequence[GroundMotion], read: Scaled) -> RecordAnswer:
-
-    first, measures = examined[0], examined[0].measures
-    sentence = f"{first.label}: PGA {measures.pga_g:.3g} g, PGV {measures.pgv:.3g} m/s."
+    first = examined[0]
     with_spectra = first.spectrum is not None
     return RecordAnswer(
         "record",
-        measures,
-        View(lambda: data(first), [*parts(examined, 100), sentence]),
+        first.measures,
+        View(lambda: data(first), [*parts(examined)]),
         partial(_columns, scaled[0]),
         drawn(SPECTRA, _spectra(examined)) if with_spectra else partial(_figure, scaled[0], first, read),
         tables={"spectrum": partial(spectra_table, _spectra(examined))} if with_spectra else {},

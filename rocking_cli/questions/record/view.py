@@ -14,9 +14,10 @@ import numpy as np
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulse_fit import CRITERIA, PulseFit
 from rocking_cli.short_repr import short_repr
+from rocking_cli.text import in_short
 from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_across, table_of
 from rocking_cli.views.response import fit_data, pulse_data
-from rocking_cli.views.view import ABSENT, Table, View, number, processing_data
+from rocking_cli.views.view import ABSENT, ASIDE, Aside, Table, View, number, processing_data
 
 if TYPE_CHECKING:
     from rocking_cli.excitation.base import Doubt, GroundMotion
@@ -26,10 +27,9 @@ if TYPE_CHECKING:
     from rocking_cli.processing.intensity import Measure
     from rocking_cli.processing.oscillator import ResponseSpectrum
 
-MAX_NAME_LINE = 14  # characters of a line of a record's name above its column, broken at blanks
 MAX_HEADING_LINE = 9  # characters of a line of a heading above a quantity
-LABELS_WIDTH = 26  # characters that labels and units take in a table
-COLUMN_GAP = 3  # blanks between columns
+IN_WORDS = {"dt", "duration", "PGA", "PGV"}
+"""Headings of the quantities of a single record that a sentence has."""
 
 
 @short_repr
@@ -57,38 +57,33 @@ def _channel(record: Examined) -> str | None:
     return record.motion.name.partition(f"{Path(record.file).name} channel ")[2] or None
 
 
-def _folded(name: str, width: int = MAX_NAME_LINE) -> str:
-    """Break a name at blanks into lines of a column's width."""
-    return "\n".join(wrap(name, width, break_long_words=False, break_on_hyphens=False))
-
-
 AS_READ: tuple[Column[Examined], ...] = (
     Column("file", of("file")),
     Column("name", of("motion.name")),
-    Column("format", of("motion.format"), head="format", form=_folded),
+    Column("format", of("motion.format"), head="format", rank=ASIDE),
     Column("channel", _channel, head="channel"),
-    Column("unit", of("motion.source_unit"), head="unit in the file"),
+    Column("unit", of("motion.source_unit"), head="unit in the file", rank=ASIDE),
     Column("origin", lambda record: record.motion.origin._asdict()),
-    only_shown("earthquake", lambda record: record.motion.origin.event or None, _folded),
-    only_shown("station", lambda record: record.motion.origin.station or None, _folded),
-    only_shown("magnitude", of("motion.origin.magnitude"), number),
-    only_shown("distance", of("motion.origin.distance"), unit="km"),
-    Column("npts", of("motion.npts"), head="points"),
-    Column("dt", of("motion.dt"), "s", "dt", number),
-    Column("duration", of("motion.duration"), "s", "duration", number),
-    only_shown("processed", lambda record: "\n".join(record.motion.processing) or None),
-    only_shown("prepared from", lambda record: record.motion.prepared_from or None, _folded),
+    only_shown("earthquake", lambda record: record.motion.origin.event or None, rank=4),
+    only_shown("station", lambda record: record.motion.origin.station or None, rank=4),
+    only_shown("magnitude", of("motion.origin.magnitude"), number, rank=3),
+    only_shown("distance", of("motion.origin.distance"), unit="km", rank=3),
+    Column("npts", of("motion.npts"), head="points", rank=ASIDE),
+    Column("dt", of("motion.dt"), "s", "dt", number, rank=3),
+    Column("duration", of("motion.duration"), "s", "duration", number, rank=3),
+    only_shown("processed", lambda record: ", ".join(record.motion.processing) or None, rank=4),
+    only_shown("prepared from", lambda record: record.motion.prepared_from or None, rank=4),
     Column("factor", of("factor"), head="scaled by", form=number),
 )
 MEASURED: tuple[Column[Examined], ...] = (
     Column("pga_g", of("measures.pga_g"), "g", "PGA"),
-    Column("pgv", of("measures.pgv"), "m/s", "PGV"),
-    Column("pgd", of("measures.pgd"), "m", "PGD"),
-    Column("arias_intensity", of("measures.arias"), "m/s", "Arias intensity"),
-    Column("significant_duration", of("measures.significant_duration"), "s", "5-95 % duration"),
-    Column("t_5", of("measures.t_5"), "s", "5 % of Arias at"),
-    Column("t_95", of("measures.t_95"), "s", "95 % of Arias at"),
-    Column("mean_acceleration", of("measures.mean"), "g", "mean acceleration", rounded(2)),
+    Column("pgv", of("measures.pgv"), "m/s", "PGV", rank=1),
+    Column("pgd", of("measures.pgd"), "m", "PGD", rank=2),
+    Column("arias_intensity", of("measures.arias"), "m/s", "Arias intensity", rank=2),
+    Column("significant_duration", of("measures.significant_duration"), "s", "5-95 % duration", rank=2),
+    Column("t_5", of("measures.t_5"), "s", "5 % of Arias at", rank=ASIDE),
+    Column("t_95", of("measures.t_95"), "s", "95 % of Arias at", rank=ASIDE),
+    Column("mean_acceleration", of("measures.mean"), "g", "mean acceleration", rounded(2), rank=ASIDE),
     Column("final_velocity", of("measures.final_velocity"), "m/s"),
     Column("final_displacement", of("measures.final_displacement"), "m"),
     Column("p_dt", of("p_dt"), head="p dt", form=rounded(2)),
@@ -108,48 +103,42 @@ def data(record: Examined) -> dict[str, Any]:
     return entry
 
 
-def parts(records: Sequence[Examined], width: int | None) -> Iterator[Table | str]:
-    """Yield tables with a column for each record, as many as the width requires, then the pulses of each record.
+def parts(records: Sequence[Examined]) -> Iterator[Table | str]:
+    """Yield how strong the records are, and whether they have defects, a table, and the pulses of each record.
 
-    If a table has room for one record only, the name is its title. Without a width, as in a pipe, several records are
-    one table with a row for each.
+    A record alone is a column of its table; of several, each is a row, without line breaks.
     """
+    yield in_words(records)
     columns = _columns(records)
-    if width is None and len(records) > 1:
-        yield _long(records, columns)
+    if len(records) == 1:
+        yield table_across(records[0].label, columns, ["value"], records)
     else:
-        yield from _side_by_side(records, columns, width)
+        yield _long(records, columns)
     for record in records:
         if record.pulses:
             yield from _pulses(record.label, record.pulses)
     yield from (peaks(each.label, each.spectrum) for each in records if each.spectrum is not None)
 
 
-def _side_by_side(
-    records: Sequence[Examined], columns: Sequence[Column[Examined]], width: int | None
-) -> Iterator[Table]:
-    """Yield tables with a column for each record."""
-    names = [_folded(record.label) for record in records]
-    fitting = len(records)
-    if width is not None:
-        widest = max(MAX_NAME_LINE, *(len(line) for name in names for line in name.split("\n")))
-        fitting = max((width - LABELS_WIDTH) // (widest + COLUMN_GAP), 1)
-    for start in range(0, len(records), fitting):
-        part = slice(start, start + fitting)
-        title, headings = ("", names[part])
-        if len(headings) == 1:
-            title, headings = records[start].label, ["value"]
-        yield table_across(title, columns, headings, records[part])
+def in_words(records: Sequence[Examined]) -> str:
+    """Return in words how strong a record is, or how many records there are, and which have possible defects."""
+    first, doubtful = records[0], [each.label for each in records if each.doubts]
+    least, most = (f"{end(each.measures.pga_g for each in records):.3g}" for end in (min, max))
+    words = f"{len(records)} records, PGA {f'{least} to ' * (least != most)}{most} g"
+    if len(records) == 1:
+        strong = f"PGA {first.measures.pga_g:.3g} g, PGV {first.measures.pgv:.3g} m/s"
+        words = f"{first.label}: {strong}; {first.motion.duration:.4g} s at dt = {first.motion.dt:.4g} s"
+    whose = f" of {in_short(doubtful)}" if len(records) > 1 else ""
+    return f"{words}. " + (f"Possible defects{whose}: see the warnings." if doubtful else "No defects found.")
 
 
 def _long(records: Sequence[Examined], columns: Sequence[Column[Examined]]) -> Table:
-    """Return a table with a row for each record, none of which has a line break."""
-    narrow = []  # with their units in the headings, which are broken into lines
+    """Return a table with a row for each record, with units in its headings."""
+    narrow = []
     for each in columns:
-        unit = f"\n[{each.unit}]" if each.unit else ""
-        narrow.append(replace(each, head=f"{_folded(each.head or '', MAX_HEADING_LINE)}{unit}"))
-    whole = table_of("", [only_shown("record", of("label"), text=True), *narrow], records)
-    return replace(whole, rows=[[cell.replace("\n", " ") for cell in row] for row in whole.rows])
+        lines = wrap(each.head or "", MAX_HEADING_LINE, break_long_words=False, break_on_hyphens=False)
+        narrow.append(replace(each, head="\n".join([*lines, *[f"[{each.unit}]"] * bool(each.unit)])))
+    return table_of("", [only_shown("record", of("label"), text=True), *narrow], records)
 
 
 def _columns(records: Sequence[Examined]) -> list[Column[Examined]]:
@@ -163,6 +152,8 @@ def _columns(records: Sequence[Examined]) -> list[Column[Examined]]:
         if column.head is not None
         and (column.head not in silent or any(column.cell(each) != silent[column.head] for each in records))
     ]
+    if len(records) == 1:  # the first sentence has their values
+        columns = [replace(each, rank=ASIDE) if each.head in IN_WORDS else each for each in columns]
     return columns + [only_shown(str(each), partial(_asked, each), unit=each.unit) for each in records[0].asked]
 
 
@@ -195,7 +186,7 @@ def _pulses(name: str, fits: Sequence[PulseFit]) -> Iterator[Table | str]:
     for criterion in CRITERIA:
         one = [fit for fit in fits if fit.criterion == criterion]
         yield table_across(f"{name}: pulses fitted in {criterion}", PULSES, [fit.pulse.name for fit in one], one)
-    yield "Energy captured: 1 - sum (r - s)^2 / sum r^2, r of the record and s of the pulse."
+    yield Aside("Energy captured: 1 - sum (r - s)^2 / sum r^2, r of the record and s of the pulse.")
 
 
 ORDINATES: tuple[Column[ResponseSpectrum], ...] = (

@@ -110,7 +110,7 @@ class Several:
 
     def _columns(self) -> Iterator[Column[MotionRow]]:
         yield only_shown(f"peak phi/{'limit' if any(self._free) else 'phi_cr'}\nunder", of("name"), text=True)
-        yield only_shown("PGA\n[g]", of("pga"))
+        yield only_shown("PGA\n[g]", of("pga"), rank=2)
         for model, head in zip(self._models, model_heads(self._models, unknown=bool(self._until)), strict=True):
             yield only_shown(head, partial(_fate_of, model))
         if "nonlinear" in self._models or self._engine == "exact":  # free blocks do not move as the mechanism does
@@ -121,10 +121,10 @@ class Several:
     def _peaks(self) -> Iterator[Column[MotionRow]]:
         """Yield the columns of the peak displacement of the control point, and of the largest force of each tie."""
         at = [*self._watched.points].index(self._watched.control)
-        how = rounded(4, 1e3), f"{self._watched.control}, horizontal displacement"
+        how = rounded(4, 1e3), f"{self._watched.control}, horizontal displacement", "", False, 3
         yield Column(None, partial(_peak, "points", at, "horizontal"), "m", f"{self._watched.control}\n[mm]", *how)
         for k, tie in enumerate(self._watched.ties):
-            how = rounded(4, 1e-3), f"{tie.name}, force"
+            how = rounded(4, 1e-3), f"{tie.name}, force", "", False, 3
             yield Column(None, partial(_peak, "ties", k, "force"), "N", f"{tie.name}\n[kN]", *how)
 
     def columns(self) -> Columns:

@@ -16,7 +16,7 @@ from rocking_cli.questions.select.subsets import SEARCH_STARTS
 from rocking_cli.questions.select.target_spectrum import TargetSpectrum
 from rocking_cli.short_repr import short_repr
 from rocking_cli.text import cut
-from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_of
+from rocking_cli.views.column import Column, data_of, of, rounded, table_of
 from rocking_cli.views.view import Table, View
 
 if TYPE_CHECKING:
@@ -60,15 +60,6 @@ class _Chosen(NamedTuple):
     factor: float
 
 
-class _Extreme(NamedTuple):
-    """The smallest or the largest ratio of the mean to the target, its period and its limit."""
-
-    what: str
-    ratio: str
-    period: float
-    limit: float
-
-
 def _shortened(name: str) -> str:
     return cut(name, MAX_NAME_LENGTH)
 
@@ -76,27 +67,20 @@ def _shortened(name: str) -> str:
 RECORDS: tuple[Column[_Chosen], ...] = (
     Column("file", of("file")),
     Column("name", of("motion.name"), head="record", text=True),
-    Column("event", of("motion.origin.event"), head="earthquake", form=_shortened, text=True),
-    Column("station", of("motion.origin.station"), head="station", form=_shortened, text=True),
+    Column("event", of("motion.origin.event"), head="earthquake", form=_shortened, text=True, rank=2),
+    Column("station", of("motion.origin.station"), head="station", form=_shortened, text=True, rank=3),
     Column("magnitude", of("motion.origin.magnitude")),
     Column("distance", of("motion.origin.distance"), "km"),
     Column("factor", of("factor"), head="factor"),
-    Column("pga_g", lambda row: row.factor * row.motion.of_ground.pga_g, "g", "PGA as\nscaled [g]", rounded(3)),
-)
-ENDS: tuple[Column[_Extreme], ...] = (
-    only_shown("", of("what"), text=True),
-    only_shown("ratio", of("ratio")),
-    only_shown("at [s]", of("period"), rounded(3)),
-    only_shown("limit", of("limit")),
+    Column("pga_g", lambda row: row.factor * row.motion.of_ground.pga_g, "g", "PGA as\nscaled [g]", rounded(3), rank=1),
 )
 
 
 def view(results: ShownSet) -> View:
-    """Show the records and their factors, the range of the mean over the target, and remarks."""
+    """Show the range of the mean over the target, the records and their factors, and remarks."""
     parts: list[Table | str] = [
-        table_of(title(results), RECORDS, _chosen(results)),
-        table_of("Mean over the target", ENDS, _ends(results)),
         verdict(results),
+        table_of(title(results), RECORDS, _chosen(results)),
         search(results),
     ]
     parts += [sentence for sentence in (_left_out(results), _silent(results)) if sentence]
@@ -215,15 +199,6 @@ def _chosen(results: ShownSet) -> list[_Chosen]:
     selection = results.found
     pairs = zip(selection.chosen.tolist(), selection.factors.tolist(), strict=True)
     return [_Chosen(results.files[k], selection.candidates.motions[k], factor) for k, factor in pairs]
-
-
-def _ends(results: ShownSet) -> list[_Extreme]:
-    """Return the smallest and the largest ratio of the mean to the target."""
-    ratio, periods, limits = results.found.ratio, results.found.candidates.periods, results.found.wanted.within
-    ends = zip(("least", "most"), (int(ratio.argmin()), int(ratio.argmax())), limits, strict=True)
-    return [
-        _Extreme(what, ratio_in_words(float(ratio[k]), limits), float(periods[k]), limit) for what, k, limit in ends
-    ]
 
 
 def _spans(periods: NDArray[np.float64], where: NDArray[np.bool_]) -> str:

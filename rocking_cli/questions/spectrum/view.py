@@ -18,7 +18,7 @@ from rocking_cli.questions.spectrum.study import Spectrum
 from rocking_cli.short_repr import short_repr
 from rocking_cli.views.column import Column, only_shown, rounded, table_of
 from rocking_cli.views.verdict import INVALID_REASON, unchecked
-from rocking_cli.views.view import ABSENT, Table, View, processing_data
+from rocking_cli.views.view import ABSENT, ASIDE, Aside, Table, View, processing_data
 
 MAX_TABLE_ROWS = 12  # rows of a table, besides that of the structure as given; --out and --json have the whole curves
 SCALING_NOTE = (
@@ -53,19 +53,19 @@ class ShownSpectra:
 
 def view(results: ShownSpectra) -> View:
     """Show the peaks as a function of the size of each shape, and a verdict on each."""
-    parts = [part for each in results.spectra for part in _curve(results, each)]
-    sentences = [_verdict(results, each) for each in results.spectra]
+    verdicts = [_verdict(results, each) for each in results.spectra]
+    sentences: list[Table | str] = [part for each in results.spectra for part in _curve(results, each)]
     if any(each.shape.slenderness is None for each in results.spectra):
-        sentences.append(
+        sentences.append(Aside(
             "Scale multiplies all lengths of the structure. Larger structures have a smaller frequency parameter p."
-        )
+        ))  # fmt: skip
     if any(each.shape.hung for each in results.spectra):
         sentences.append(SCALING_NOTE)
     if any(each.unknown.any() for each in results.spectra):
         more = "; its peak is at least the number after >=." if results.one else ". Fractiles count it as overturning."
         sentences.append(f"The outcome is {UNKNOWN} if {INVALID_REASON}{more}")
     sentences += _joints(results)
-    return View(lambda: _all(results), [*parts, *sentences])
+    return View(lambda: _all(results), [*verdicts, *sentences])
 
 
 def _all(results: ShownSpectra) -> dict[str, Any]:
@@ -223,7 +223,9 @@ def _curve(results: ShownSpectra, each: Spectrum) -> Iterator[Table | str]:
             f" Except for the median they are '{ABSENT}' under fewer than {MIN_MOTIONS} motions, of which one decides "
             "them."
         )  # fmt: skip
-        yield f"Median and fractiles of the peak phi/phi_cr; an overturning motion ranks above every finite peak.{few}"
+        yield Aside(
+            f"Median and fractiles of the peak phi/phi_cr; an overturning motion ranks above every finite peak.{few}"
+        )
     yield table_of("", _columns(results, each), shown)
 
 
@@ -240,7 +242,8 @@ def _columns(results: ShownSpectra, each: Spectrum) -> Iterator[Column[int]]:
         falls, peaks = each.fractile_overturns(q), [_peak(value) for value in each.fractile(q)]
         # Unknown outcomes count as overturning in a fractile; if only they make it overturn, the fractile is unknown.
         cells = [UNKNOWN if peak == OVERTURNS and not known else peak for peak, known in zip(peaks, falls, strict=True)]
-        yield only_shown("median" if q == 0.5 else f"{100 * q:g} %", cells.__getitem__)
+        hidden = ASIDE * (set(cells) == {ABSENT})
+        yield only_shown("median" if q == 0.5 else f"{100 * q:g} %", cells.__getitem__, rank=hidden or int(q != 0.5))
     yield only_shown("overturned", lambda k: f"{each.overturned[k]} of {each.followed[k]}")
     if each.unknown.any():
         yield only_shown(UNKNOWN, each.doubtful.item)

@@ -20,7 +20,7 @@ from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, 
 from rocking_cli.views.conclusion import concluded_in_words, limits_in_words, uncounted_ties
 from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.sheet.language import ENGLISH, Language, texts_of, translated
-from rocking_cli.views.view import Table, View, number
+from rocking_cli.views.view import Aside, Table, View, number
 
 MAX_NAME_LENGTH = 30  # characters, in the table
 MAX_CAUTIONED = 3  # structures whose cautions are printed
@@ -74,7 +74,7 @@ def _peak(peak: float) -> str:
 STRUCTURE: tuple[Column[RankedStructure], ...] = (
     Column("rank", of("rank"), head="rank"),
     Column("name", of("found.name"), head="name", form=one_line, text=True),
-    Column("mechanism", of("found.mechanism"), head="mechanism", text=True),
+    Column("mechanism", of("found.mechanism"), head="mechanism", text=True, rank=4),
     Column("side", of("found.side"), head="side", text=True),
     Column("row", of("found.row")),
     Column("line", of("found.line")),
@@ -82,7 +82,7 @@ STRUCTURE: tuple[Column[RankedStructure], ...] = (
 OF_SITE: tuple[Column[RankedStructure], ...] = (
     Column("ratio", of("found.ratio"), head="ratio"),
     Column("concluded", of("found.verified.concluded.value"), head="verified", form=concluded_in_words, text=True),
-    Column("limit_state", _limit_state, head="governs", text=True),
+    Column("limit_state", _limit_state, head="governs", text=True, rank=2),
     Column("not_counted", _not_counted, head="not\ncounted", text=True),
 )
 OF_NEIGHBOURS: tuple[Column[RankedStructure], ...] = (
@@ -93,21 +93,21 @@ OF_NEIGHBOURS: tuple[Column[RankedStructure], ...] = (
 UNDER_MOTIONS: tuple[Column[RankedStructure], ...] = (
     Column("overturned", of("found.under.overturned"), head="overturn\nit", form=percent),
     Column("unknown", of("found.under.unknown"), head="unknown", form=percent),
-    Column("peak_ratio", of("found.under.peak_ratio"), head="largest\npeak", form=_peak),
-    Column("slip", of("found.under.slip"), "m", "largest\nslip [m]", rounded(3)),
+    Column("peak_ratio", of("found.under.peak_ratio"), head="largest\npeak", form=_peak, rank=1),
+    Column("slip", of("found.under.slip"), "m", "largest\nslip [m]", rounded(3), rank=1),
     Column("peak_over", of("found.under.over"), text=True),
     Column("outcome", of("found.under.concluded.value"), text=True),
     Column("worst", of("found.under.worst"), text=True),
 )
 PARAMETERS: tuple[Column[RankedStructure], ...] = (
-    Column("lambda", of("found.lambda_"), head="lambda"),
+    Column("lambda", of("found.lambda_"), head="lambda", rank=3),
     Column("uplift", of("found.uplift"), "g"),
     Column("direction", of("found.direction"), text=True),
-    Column("p", of("found.p"), "rad/s", "p\n[rad/s]"),
-    Column("phi_cr", of("found.phi_cr"), "rad", "phi_cr\n[rad]"),
+    Column("p", of("found.p"), "rad/s", "p\n[rad/s]", rank=6),
+    Column("phi_cr", of("found.phi_cr"), "rad", "phi_cr\n[rad]", rank=6),
     Column("kappa1", of("found.kappa1")),
-    Column("kappa2", of("found.kappa2"), head="kappa2"),
-    Column("eta", of("found.eta"), head="eta"),
+    Column("kappa2", of("found.kappa2"), head="kappa2", rank=6),
+    Column("eta", of("found.eta"), head="eta", rank=6),
     Column("no_block", of("found.no_block"), text=True),
     Column("doubt", of("found.doubt"), text=True),
     Column("caution", caution_of, text=True),
@@ -116,8 +116,8 @@ PARAMETERS: tuple[Column[RankedStructure], ...] = (
 
 OF_MOTIONS = {"overturned", "unknown"}
 """Keys of the columns on the motions themselves, which tables do not show beside those of their neighbours."""
-LEFT_TO_PAGES = {"phi_cr", "kappa2", "eta"}
-"""Keys of the columns that terminals do not show beside those of a site, so that a row fits into a line."""
+RARE = ("side", "slip", "unknown", "not_counted")
+"""Keys of the columns that tables show only if any row has a value."""
 
 
 def texts_in(key: str) -> Language:
@@ -167,7 +167,7 @@ def _columns(found: Survey) -> list[Column[RankedStructure]]:
 
 def _number(name: str, unit: str) -> Column[RankedStructure]:
     """Return the column of a number that the code of the site has for a row."""
-    return Column(name, lambda row: row.found.numbers[name], unit, f"{name}\n[{unit}]" if unit else name)
+    return Column(name, lambda row: row.found.numbers[name], unit, f"{name}\n[{unit}]" if unit else name, rank=5)
 
 
 def _kept(sheet: Spreadsheet | None, taken: Collection[str]) -> Iterator[Column[RankedStructure]]:
@@ -222,19 +222,12 @@ def _with_decimal(sheet: Spreadsheet, cell: str, decimal: str) -> str:
 
 def table(found: Survey, top: int, longest: int | None = MAX_NAME_LENGTH, say: Language = ENGLISH) -> Table:
     """Return a table of the first rows, with names of at most `longest` characters."""
-    under, rows = [each.under for each in found.rows if each.under is not None], _ranked(found)
-    known = not any(each.unknown for each in under)
-    empty = set(OF_MOTIONS) if found.around.count else {"unknown"} if known else set[str]()
-    if all(each.side is None for each in found.rows):
-        empty.add("side")
-    if not any(each.slip for each in under):
-        empty.add("slip")
-    if all(_not_counted(row) is None for row in rows):
-        empty.add("not_counted")
-    if found.by == "ratio" and longest is not None:
-        empty |= LEFT_TO_PAGES
-    empty |= {name for name in found.units if all(each.numbers[name] is None for each in found.rows)}
-    shown = [column for column in _columns(found) if column.key not in empty]
+    rows, hidden = _ranked(found), OF_MOTIONS if found.around.count else set[str]()
+    shown = [
+        column for column in _columns(found)
+        if column.key not in hidden
+        and (column.key not in {*RARE, *found.units} or any(column.of(row) not in (None, 0) for row in rows))
+    ]  # fmt: skip
     if any(caution_of(row) is not None for row in rows):
         mark = partial(caution_of, say=say) if longest is None else lambda row: caution_of(row) and "yes"
         shown.append(only_shown("caution", mark, text=True))
@@ -319,9 +312,10 @@ def _of_motions(found: Survey) -> str:
     unknown = f", {doubtful:,} may overturn (unknown outcome)" if doubtful else ""
     unknown += f", {slides:,} only {'slides' if slides == 1 else 'slide'}" if slides else ""
     verb = "overturns" if falls == 1 else "overturn"
+    first = f" {_named(found.rows[:1])} is the most vulnerable." if found.by == "response" and len(under) > 1 else ""
     return (
         f"Under {motions}, {falls:,} of {_structures(len(under))} {verb}{unknown}, and {lifts:,} "
-        f"{'uplifts' if lifts == 1 else 'uplift'}."
+        f"{'uplifts' if lifts == 1 else 'uplift'}.{first}"
     )
 
 
@@ -333,19 +327,18 @@ def sentences(found: Survey, top: int | None = None, say: Language = ENGLISH) ->
     """Return sentences on how to read the rows."""
     rows, many = found.rows, len(found.rows)
     ranked = RANKED[found.by].format("neighbouring motions" if found.around.count else "motions")
-    lines = [f"Ranked {ranked}."]
-    if top is not None and many > top:
-        lines[0] = f"Showing {top} of {many:,}, ranked {ranked}."
+    lines = [f"Showing {top} of {many:,}."] if top is not None and many > top else []
+    lines.append(Aside(f"Ranked {ranked}."))
     if turned := [each for each in rows if each.side is not None]:
         lines.append(
             f"{_named(turned)}: ranked about the depth, the weaker side of the base. If a structure cannot rock about "
             f"it, give its column {named('plane')} the word width."
         )
     if found.motions:
-        lines.append(
+        lines.append(Aside(
             "Time histories are by the nonlinear model. The peak is the largest rotation over the critical rotation "
             "among the motions that do not overturn the structure."
-        )
+        ))  # fmt: skip
         lines += _of_neighbours(found)
         lines += _not_known(rows)
     cautions = [(each.name, caution_of(RankedStructure(0, each), say)) for each in rows]
@@ -359,10 +352,10 @@ def sentences(found: Survey, top: int | None = None, say: Language = ENGLISH) ->
             "before you rely on a verdict. `rocking verify` names them."
         )
     if without := [each for each in rows if each.no_block is not None]:
-        lines.append(
+        lines.append(Aside(
             f"{_named(without)}: no equivalent single block, so only lambda is given and not p; `rocking equiv` gives "
             "the reason."
-        )
+        ))  # fmt: skip
     return lines
 
 
@@ -375,7 +368,8 @@ def _of_neighbours(found: Survey) -> Iterator[str]:
         return
     of = f"{found.around.count} neighbours ({deviations(found.around)})"
     mean = " of each motion, the mean over the motions" if len(found.motions) > 1 else ""
-    yield f"The share is that of {of}{mean}{f'; {fewer}' if found.reduced else ''}."
+    share = f"The share is that of {of}{mean}"
+    yield f"{share}; {fewer}." if found.reduced else Aside(f"{share}.")
 
 
 def _not_known(rows: Sequence[Surveyed]) -> Iterator[str]:

@@ -110,7 +110,7 @@ class VerifyAsked(OfStructure, AtSite, MaybeUnderMotions, ForRecords, OfJoints, 
     )  # fmt: skip
     in_full: bool = option(
         "Show also the ground, both curves, every clause and the remarks in full.",
-        default=True, typed="all", on_terminal=False,
+        default=True, where="Python", on_terminal=False,
     )  # fmt: skip
     sheet: Path | None = option(
         "Write the calculation sheet (.html; .docx and .pdf need an extra package; a browser does for .pdf).",

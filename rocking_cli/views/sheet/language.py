@@ -255,7 +255,7 @@ def translated(say: Language, shown: view.View) -> view.View:
                 for row in each.rows]  # fmt: skip
         return replace(each, title=lines(each.title), columns=[*map(lines, each.columns)], rows=rows)
 
-    parts = [table(part) if isinstance(part, view.Table) else lines(part) for part in shown.parts]
+    parts = [table(part) if isinstance(part, view.Table) else type(part)(lines(part)) for part in shown.parts]
     return view.View(shown.data, parts)
 
 

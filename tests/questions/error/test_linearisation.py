@@ -196,10 +196,11 @@ def test_the_command_gives_what_the_library_gives():
 
 def test_the_words_follow_the_numbers():
     block = run_json("error", EXAMPLES / "block.yaml")
-    assert "kappa2 agrees" in block["verdict"]
+    assert "Kappa2 agrees" in block["verdict"]
     assert block["grades"] == dict.fromkeys(("kappa1", "kappa2"), "agrees") and block["prefer"] == "kappa2"
     arch = run_json("error", EXAMPLES / "arch.yaml")["verdict"]
-    assert "Prefer kappa2" in arch and "kappa2 is good for a first estimate" in arch and "more than 5 %" in arch
+    assert "prefer kappa2. Base decisions on" in arch and "Kappa2 is good for a first estimate" in arch
+    assert "more than 5 %" in arch
     stocky = arch_of(3.0, 100.0)
     curves = [linearisation(stocky, Direction.POSITIVE, np.linspace(0.05, 0.95, 9), np.geomspace(1.1, 10, 9))]
     assert "use the nonlinear time history" in trust(curves, [linearisation(stocky, Direction.POSITIVE, 0.1, 1.1)])
@@ -236,7 +237,7 @@ def test_the_verdict_is_that_of_its_own_numbers(structure, asked, tmp_path):
         found[kappa] = names.index(grade)
         assert data["grades"][kappa] == grade
         sentence = SENTENCES[grade].format(kappa[-1])
-        numbers = said[said.index(sentence) + len(sentence) :]
+        numbers = said[said.lower().index(sentence) + len(sentence) :]
         way = f"{percent(abs(uplift))} too {'low' if uplift < 0 else 'high'}" if kappa == "kappa1" else "kept"
         time = "infinite" if np.isinf(late) else f"off by {percent(late)}"
         shown = f"uplift acceleration {way}, free period off by {percent(period)}, overturning time {time}"
@@ -248,10 +249,10 @@ def test_the_verdict_is_that_of_its_own_numbers(structure, asked, tmp_path):
         better.pop() if found["kappa1"] == found["kappa2"] else min(found, key=found.__getitem__)
     )  # fmt: skip
     assert data["prefer"] == expected
-    last = {None: "Rely on neither at these amplitudes", "either": "Either kappa is adequate at these amplitudes"}.get(
-        expected, f"Prefer {expected} at these amplitudes"
-    )
-    assert last in said and said.count("Prefer") == (expected in ("kappa1", "kappa2"))
+    advice = {None: "rely on neither kappa", "either": "either kappa is adequate"}.get(expected, f"prefer {expected}.")
+    first, *_ = run("error", file, "--at", asked[0], "--a", asked[1]).stdout.splitlines()
+    assert first.startswith(f"At phi/phi_cr = {asked[0]:g} and {asked[1]:g} times") and advice in first
+    assert said.startswith(first) and said.count("prefer") == (expected in ("kappa1", "kappa2"))
 
 
 @pytest.mark.rest

@@ -220,6 +220,16 @@ def test_few_runs_of_unknown_outcome_leave_one_curve(whole, monkeypatch):
     assert list(edges("a", found["overturning"])) == ["a"]
 
 
+def half_of(curve):
+    """What is said of the median of a curve over PGA, as JSON has it; the levels tried are from 0.2 g to 1.5 g."""
+    if curve["median"] is None or (curve["kind"] == "lognormal" and curve["dispersion"] is None):
+        return "at no known PGA"
+    value, low, high = (np.inf if end is None else end for end in curve["median"].values())
+    outside = "" if 0.2 <= value <= 1.5 else ", outside the levels tried"
+    most = " g or more" if np.isinf(high) else f" to {high:.3g} g"
+    return f"at PGA {value:.3g} g (95 %: {low:.3g}{most}){outside}"
+
+
 def test_words_and_json_state_a_band_and_how_many_runs_are_unknown(whole):
     shown, data = command("results", whole.place), json.loads(command("results", whole.place, "--json").stdout)
     unknown = int((whole.rows.outcome == UNKNOWN).sum())
@@ -236,6 +246,9 @@ def test_words_and_json_state_a_band_and_how_many_runs_are_unknown(whole):
         assert curve["unknown_share"] == curve["unknown"] / whole.plan.size and curve["band"] == (curve["unknown"] > 0)
         if curve["limit_state"] == "overturning":
             assert curve["annual_rate"]["rate"] > curve["lower"]["annual_rate"]["rate"] > 0
+            assert lines[0] == f"portal: 50 % overturn {half_of(curve)}, if runs of unknown outcome overturn, and " + (
+                f"{half_of(curve['lower'])}, if they do not."
+            )
     for edge in ("upper", "lower"):
         assert any(line.startswith(f"overturning, {edge} ") for line in lines)
         assert not any(line.startswith(f"uplift, {edge}") for line in lines)

@@ -3,7 +3,8 @@
 import json
 import re
 from dataclasses import replace
-from math import asin, exp, log, pi, sqrt
+from math import asin, exp, log, nan, pi, sqrt
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -33,6 +34,7 @@ from rocking_cli.questions.overturning.study import (
     usual_amplitudes,
     usual_periods,
 )
+from rocking_cli.questions.overturning.view import _smallest
 from rocking_cli.structure import Structure, build_models
 from rocking_cli.studies.under_pulses import linear_block, outcomes, parse_shape, pulsed_model, weakest_direction
 from tests.cli.test_cli import run, run_json
@@ -347,6 +349,38 @@ class TestCommand:
         ]
         text = run(*asked).stdout
         assert "overturns first" in text and "Overturned by the smallest amplitude:" in text
+
+    @pytest.mark.parametrize(
+        ("least", "unknown", "said"),
+        [
+            ([nan, 0.8, 0.6, 0.7], [nan] * 4, "overturns tower is 0.6 g (in steps of at most 0.3 g), at T = 3 s."),
+            ([nan, 0.8, 0.6, 0.6], [nan] * 4, "at T = 4 s, the edge of the map: beyond it, less may do."),
+            ([nan, 0.2, 0.6, 0.6], [nan] * 4, "at T = 2 s, the edge of the map: beyond it, less may do."),
+            ([nan] * 4, [nan] * 4, "No pulse on the map overturns tower, up to 0.9 g, from T = 1 s to T = 4 s."),
+            ([nan] * 4, [nan, 0.5, 0.7, nan], "No pulse on the map is known to overturn tower, up to 0.9 g, from T = 1 "
+             "s to T = 4 s. The smallest a_g whose outcome is unknown is 0.5 g (in steps of at most 0.3 g), at T = 2 "
+             "s."),
+            ([nan, 0.8, 0.6, 0.7], [0.6, nan, nan, nan], "at T = 3 s."),
+            ([nan, 0.8, 0.6, 0.7], [0.5, nan, nan, nan], "unknown is 0.5 g (in steps of at most 0.3 g), at T = 1 s, "
+             "the edge of the map: beyond it, less may do."),
+        ],
+    )  # fmt: skip
+    def test_the_smallest_amplitude_is_said_with_the_edges_of_its_map(self, least, unknown, said):
+        curves = {Region.UNKNOWN: np.array(unknown), Region.AFTER_IMPACT: np.array(least)}
+        found = SimpleNamespace(structure=SimpleNamespace(name="tower"), periods=np.arange(1.0, 5), omega=None,
+                                a=np.array([0.2, 0.4, 0.6, 0.9]), least=lambda *of: curves[of[0]])  # fmt: skip
+        sentence = _smallest(found, 1.0, dimensionless=False)
+        assert sentence.endswith(said) and ("unknown" in sentence) == ("unknown" in said)
+
+    def test_a_map_begins_with_the_smallest_amplitude(self):
+        asked = ("overturning", FILES[0], "--points", 16)
+        data = run_json(*asked)
+        curve = data["least_a"]["overturning"]
+        k = min((k for k, a in enumerate(curve) if a is not None), key=lambda k: (curve[k], -k))
+        amplitude = curve[k] / data["a"][0] * data["ag"][0]
+        first = run(*asked).stdout.splitlines()[0]
+        assert first.startswith(f"The smallest a_g on the map that overturns pedestal is {amplitude:.3g} g (")
+        assert f", at T = {data['period'][k]:.3g} s, the edge of the map" in first and k == 15
 
     def test_a_tie_is_said_so(self, tmp_path):
         for name in ("one", "two"):

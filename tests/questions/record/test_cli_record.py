@@ -50,8 +50,12 @@ class TestWhatIsShown:
         assert (data["mean_acceleration"], data["warnings"], data["factor"]) == (found.mean, [], 1)
 
     def test_the_table_has_every_measure_and_no_row_that_says_nothing(self):
-        result = run("record", ACCEL)
+        result = run("record", ACCEL, "--all")
         data = run_json("record", ACCEL)
+        said = (
+            f"accel.csv: PGA {data['pga_g']:.3g} g, PGV {data['pgv']:.3g} m/s; {data['duration']:g} s at dt = 0.01 s. "
+        )
+        assert result.stdout.startswith(f"{said}No defects found.\n") and not data["warnings"]
         for key in ("pga_g", "pgv", "pgd", "arias_intensity", "significant_duration", "t_5", "t_95"):
             assert f"{data[key]:.4g}" in result.stdout
         assert all(word in result.stdout for word in ("accel.csv", "text", "1201", "m/s", "5-95 %"))
@@ -60,9 +64,9 @@ class TestWhatIsShown:
 
     def test_several_files_in_a_pipe_are_a_row_each(self, monkeypatch):
         monkeypatch.delenv("COLUMNS", raising=False)
-        one, other = run("record", ACCEL, "--scale", "2").stdout, run("record", ACCEL, ACROSS, "--scale", "2").stdout
+        one, other = (run("record", *files, "--scale", "2", "--all").stdout for files in ([ACCEL], [ACCEL, ACROSS]))
         (first,) = [re.split("  +", line.strip()) for line in other.splitlines() if line.startswith(" accel.csv")]
-        lines = [re.split("  +", line.strip()) for line in one.splitlines()[3:] if line.strip(" ─-")]
+        lines = [re.split("  +", line.strip()) for line in one.splitlines()[4:] if line.strip(" ─-")]
         assert first == ["accel.csv", *(value for _, value, *_ in lines)]
         assert max(map(len, other.splitlines())) < 200 and "95 % of Arias at" in one
 
@@ -92,6 +96,10 @@ class TestDoubts:
         for each in warnings:
             assert f"warning: odd.csv: {each['text']}" in result.stderr
         assert all(each["kind"] != "p_dt" for each in warnings)
+        assert "s. Possible defects: see the warnings." in run("record", odd).stdout.splitlines()[0]
+        pga = min(run_json("record", odd)["pga_g"], 0.55)
+        both = run("record", ACCEL, odd).stdout.splitlines()[0]
+        assert both == f"2 records, PGA {pga:.3g} to 0.55 g. Possible defects of odd.csv: see the warnings."
 
     def test_an_interval_too_coarse_for_a_structure(self, tmp_path):
         (tmp_path / "small.yaml").write_text("mechanism: block\nwidth: 0.02\nheight: 0.06\n", encoding="utf-8")
@@ -136,7 +144,7 @@ class TestScaling:
         assert [line.pop("given") for line in lines] == [{"polarity": "both"}] * 2
         alone = [run_json("record", ACCEL, "--polarity", sign) for sign in ("1", "-1")]
         assert lines == [{key: each[key] for key in each if key != "given"} for each in alone]
-        text = " ".join(run("record", ACCEL, "--polarity", "both").stdout.split())
+        text = " ".join(run("record", ACCEL, "--polarity", "both", "--all").stdout.split())
         assert " accel.csv text " in text and "accel.csv, reversed text" in text and "scaled by" in text
         assert "one polarity" in run("record", ACCEL, "--polarity", "both", "--plot", "r.png", code=2).stderr
         shutil.copy(ACCEL, tmp_path / "a.AT2")

@@ -269,7 +269,8 @@ class TestRanking:
         assert data["neighbours"]["count"] == 40 and data["neighbours"]["amplitude"] == 0.04
         shares = [row["share_highest"] for row in data["rows"]]
         assert shares == sorted(shares, reverse=True) and shares[0] > shares[-1]
-        assert "The share is that of 10 neighbours (standard deviations" in run(*asked, "--neighbours", "10").stdout
+        said = run(*asked, "--neighbours", "10", "--all").stdout
+        assert "The share is that of 10 neighbours (standard deviations" in said
         alone = found(*asked, "--neighbours", "0")
         assert alone["neighbours"] is None and "share_highest" not in alone["rows"][0]
         assert "One time history is one sample" in run(*asked, "--neighbours", "0").stdout
