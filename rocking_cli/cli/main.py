@@ -220,22 +220,18 @@ class LazyGroup(click.Group):
 @click.group(
     cls=LazyGroup,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
-    epilog="Exit codes: 0 done, whatever the outcome; 1 system, 2 input, 3 mechanism or plugin, 4 solver or selfcheck; 5 "
-    "done, but not for the records or runs that are named; 128 + n signal n.",
+    epilog="Exit codes: 0 done, whatever the outcome; 1 system, 2 input, 3 mechanism or plugin, 4 solver or selfcheck; "
+    "5 done, but not for the records or runs that are named; 128 + n signal n.",
 )
 @click.version_option(__version__, prog_name="rocking")
-@click.option(
-    "-v", "--verbose", is_flag=True, help="Show all, where inputs come from and how long it takes."
-)
+@click.option("-v", "--verbose", is_flag=True, help="Show all, where inputs come from and how long it takes.")
 @click.option(
     "--debug",
     is_flag=True,
     default=lambda: os.environ.get("ROCKING_DEBUG") == "1",
     help="Show the Python traceback of errors (or ROCKING_DEBUG=1).",
 )
-@click.option(
-    "--formulas", is_flag=True, help="Leave texts in CSV tables that a spreadsheet would compute."
-)
+@click.option("--formulas", is_flag=True, help="Leave texts in CSV tables that a spreadsheet would compute.")
 def main(verbose: bool, debug: bool, formulas: bool) -> None:
     """Rocking response of structures in earthquakes.
 

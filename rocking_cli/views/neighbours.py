@@ -49,9 +49,7 @@ def neighbours_in_words(near: Neighbours) -> str:
     if 0 < median < inf:
         sentences.append(f"the median peak is {median:.2g} {near.over}")
     # The highest known fractile of the peaks of the neighbours.
-    part, others, most = (
-        ("84 %", "16 %", high) if high < inf else ("16 %", "84 %", low if isinf(median) else 0.0)
-    )
+    part, others, most = ("84 %", "16 %", high) if high < inf else ("16 %", "84 %", low if isinf(median) else 0.0)
     if enough and 0 < most <= 1:
         sentences.append(f"{part} stay below {most:.2g} {near.over}")
     elif enough and 1 < most < inf:

@@ -401,12 +401,13 @@ def vertical_notes(motion: GroundMotion | None, gravity: float, until: float = i
     v = motion.vertical.acceleration / gravity
     low, high = 1 + min(float(v.min()), 0.0), 1 + max(float(v.max()), 0.0)
     swing = f"{sqrt(low):.2f} to {sqrt(high):.2f} times" if low > 0 else f"nothing to {sqrt(high):.2f} times"
-    sentences: list[str] = [
-        Aside(f"Vertical ground motion: gravity as the structure feels it, g + v_g'', goes from {low:.3g} g to {high:.3g} g. "
+    sentence = (
+        f"Vertical ground motion: gravity as the structure feels it, g + v_g'', goes from {low:.3g} g to {high:.3g} g. "
         "All histories take it into account, at uplift and in the restoring force. The parameters of the equivalent "
         f"block are those of constant g: its frequency parameter p would go from {swing} the value given, which closed "
-        "forms and spectra over p leave out.")
-    ]
+        "forms and spectra over p leave out."
+    )
+    sentences: list[str] = [Aside(sentence)]
     lost = contact_lost(motion, gravity)
     if lost is not None and lost <= until:
         sentences.append(

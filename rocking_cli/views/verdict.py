@@ -416,19 +416,12 @@ def _lost(time: float) -> str:
 
 
 def contact_words(found: ContactDemand, mechanism: Mechanism) -> str:
-    """Return the sentences on the demands as one text."""
-    return " ".join(contact_sentences(found, mechanism))
+    """Return the demands as one text; empty for a structure that does not rock."""
+    return " ".join(contact_parts(found, mechanism))
 
 
 def contact_parts(found: ContactDemand, mechanism: Mechanism) -> list[str]:
-    """Return the sentences on the demands for a terminal: those that it always shows as one text, then the others."""
-    sentences = contact_sentences(found, mechanism)
-    always = " ".join(each for each in sentences if not isinstance(each, Aside))
-    return [*filter(None, [always]), *(each for each in sentences if isinstance(each, Aside))]
-
-
-def contact_sentences(found: ContactDemand, mechanism: Mechanism) -> list[str]:
-    """Return the demands as sentences; none for a structure that does not rock.
+    """Return the demands as sentences: those that a terminal always shows as one text, then the others.
 
     If the joints are checked, the outcome states whether a joint opens or slides so far that the result ends.
     """
@@ -476,7 +469,8 @@ def contact_sentences(found: ContactDemand, mechanism: Mechanism) -> list[str]:
         )
     elif sums is not None:
         sentences.append(Aside(f"Forces are sums over all {sums}."))
-    return sentences
+    always = " ".join(each for each in sentences if not isinstance(each, Aside))
+    return [always, *(each for each in sentences if isinstance(each, Aside))]
 
 
 def _at_impacts(found: ContactDemand, mechanism: Mechanism) -> str:

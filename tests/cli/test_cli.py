@@ -7,6 +7,7 @@ import subprocess
 import sys
 import warnings
 from functools import cache
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,7 @@ from click.testing import CliRunner
 
 from rocking_cli.cli.main import main
 from rocking_cli.core.registry import Registry
-from rocking_cli.plugins.rooms import commands
+from rocking_cli.plugins.rooms import HEADINGS, commands
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.views.neighbours import deviations
 from tests.conftest import EXAMPLES, NEEDS_RECORDS, RECORDS, rows_of
@@ -180,6 +181,16 @@ class TestEquiv:
         assert "positive" not in run("equiv", EXAMPLES / "block.yaml").stdout
         text = run("equiv", FRAME).stdout
         assert "positive" in text and "negative" in text
+        everything = run("equiv", FRAME, "--all").stdout
+        assert [re.findall("[IGB]_eq", each) for each in (text, everything)] == [[], ["I_eq", "G_eq", "B_eq"]]
+
+    @pytest.mark.parametrize("name", ["block", "frame", "arch"])
+    def test_it_begins_with_what_the_parameters_mean(self, name):
+        sides = run_json("equiv", EXAMPLES / f"{name}.yaml")["directions"].values()
+        lines = run("equiv", EXAMPLES / f"{name}.yaml").stdout.splitlines()[:3]
+        for side in sides:
+            means = f"plift at {side['lambda']:.4g} g, critical rotation {np.degrees(side['phi_cr']):.4g} deg, p = "
+            assert any(f"{means}{side['p']:.4g} rad/s. " in line for line in lines)
 
     def test_another_gravity_is_told_apart_from_the_unit_of_records(self, tmp_path):
         (tmp_path / "moon.yaml").write_text("mechanism: block\nwidth: 1\nheight: 4\ngravity: 1.62\n", encoding="utf-8")

@@ -30,8 +30,8 @@ def view(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism]) -> 
     starts: dict[str, list[str]] = {}
     for direction, each in found.items():
         starts.setdefault(f"lambda = {number(each.lambda_)} g", []).append(direction.label)
-    where = [f"{what} in {'both directions' if len(on) > 1 else f'the {on[0]} direction'}" for what, on in starts.items()]
-    parts: list[Table | str] = [f"{heading(mechanism)}. {' and '.join(where)}."]
+    where = [f"{what} in the {' and '.join(on)} direction" for what, on in starts.items()]
+    parts: list[Table | str] = [f"{heading(mechanism)}. {'; '.join(where)}."]
     for direction, each in found.items():
         parts += [_hinges(direction, each), *_sentences(mechanism, each)]
         parts += _thrust(direction, each, *force_unit(mechanism))

@@ -27,7 +27,7 @@ from rocking_cli.views.engines import engines_in_words
 from rocking_cli.views.neighbours import deviations, neighbour_columns
 from rocking_cli.views.response import apart, is_linear, model_heads, models_used
 from rocking_cli.views.restitution import heading_of_run, restitution_sentences
-from rocking_cli.views.verdict import GO_ON, contact_parts, contact_words, unchecked, unknown_after
+from rocking_cli.views.verdict import GO_ON, contact_parts, unchecked, unknown_after
 from rocking_cli.views.view import ABSENT, ASIDE, Aside, Table, number
 
 
@@ -165,7 +165,7 @@ class Several:
     def _joints(self) -> Iterator[str]:
         """Yield until when motions are known, the friction that each requires, and the joints that fail.
 
-        If the joints hold under all motions, yield the demands of the most demanding one.
+        If the joints hold under all motions, yield the demands of the most demanding one, for --all.
         """
         for name, until in self._until.items():
             yield f"{name}: {until}"
@@ -173,15 +173,12 @@ class Several:
             yield f"Next: {GO_ON * self._witness}`rocking margin` shows up to which factor the outcomes are known."
         asks = {name: demand for name, demand in self._contacts.items() if demand.friction_needed >= 0}
         order = sorted(asks, key=lambda name: -asks[name].friction_needed)
-        if len(order) > 1:
+        if order:
             yield f"Friction that the joints require: {self._friction(asks, order)}."
         fail = {name: demand for name, demand in self._contacts.items() if not demand.stands}
-        if not fail and asks:
-            words = contact_words(asks[order[0]], self._mechanism).removeprefix("Contact: ")
-            yield Aside(f"The joints hold under all motions, of which {order[0]} demands most of them: {words}")
-        for name, demand in fail.items():
+        for name, demand in (fail or {each: asks[each] for each in order[:1]}).items():
             for words in contact_parts(demand, self._mechanism):  # none if the structure does not rock
-                yield type(words)(f"{name}: {words.removeprefix('Contact: ')}")
+                yield (type(words) if fail else Aside)(f"{name}: {words.removeprefix('Contact: ')}")
 
     def _friction(self, asks: Mapping[str, ContactDemand], order: Sequence[str]) -> str:
         """Return the friction that motions require, the largest first, and the motions that require too much."""

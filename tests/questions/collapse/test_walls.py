@@ -248,4 +248,4 @@ class TestWhatHasNoModel:
     def test_a_sentence_takes_the_place_of_a_table_of_no_hinges(self):
         structure = Assembly(**SLIDES)
         text = words(view(structure, collapses(structure)))
-        assert "lambda = 0.05 g, without hinges." in text and "hinge   between" not in text
+        assert "lambda = 0.05 g in" in text and "direction, without hinges." in text and "hinge   between" not in text
