@@ -27,11 +27,8 @@ MAX_JOINT_ROWS = 24  # number of joints up to which all are listed; with more, o
 
 def view(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism]) -> View:
     """Show lambda, hinges, groups, thrust and friction of each direction."""
-    starts: dict[str, list[str]] = {}
-    for direction, each in found.items():
-        starts.setdefault(f"lambda = {number(each.lambda_)} g", []).append(direction.label)
-    where = [f"{what} in the {' and '.join(on)} direction" for what, on in starts.items()]
-    parts: list[Table | str] = [f"{heading(mechanism)}. {'; '.join(where)}."]
+    starts = [f"lambda = {number(each.lambda_)} g in the {where.label} direction" for where, each in found.items()]
+    parts: list[Table | str] = [f"{heading(mechanism)}. {'; '.join(starts)}."]
     for direction, each in found.items():
         parts += [_hinges(direction, each), *_sentences(mechanism, each)]
         parts += _thrust(direction, each, *force_unit(mechanism))

@@ -20,6 +20,12 @@ from rocking_cli.views.restitution import restitution_used
 from rocking_cli.views.verdict import uplift_in_words
 from rocking_cli.views.view import ASIDE, Aside, View, heading, number
 
+KAPPAS = (
+    "The rotation phi of the structure is kappa times the rotation theta of its equivalent block; both kappas preserve "
+    "the critical rotation. How closely the block follows the structure depends on the amplitude: compare free periods "
+    "and overturning times with `rocking error`, and time histories with `rocking respond`."
+)
+
 
 @dataclass(frozen=True)
 class Parameter(Column[EquivalentBlock]):
@@ -87,7 +93,6 @@ PARAMETERS = (
 def view(structure: Structure) -> View:
     """Show the parameters of both directions, in one column if they agree, and which kappa to prefer."""
     mechanism, sides = structure.mechanism, sides_of(structure)
-    early = before_rocking(mechanism)
     data = {
         "mechanism": mechanism.mechanism,
         "name": mechanism.name,
@@ -110,28 +115,18 @@ def view(structure: Structure) -> View:
     rows = [side.parameters | _extras(mechanism, side.direction) for side in shown]
     table = table_across("", columns, heads, rows, {**UNIT, "meaning": of("words")})
     table = replace(table, ranks=[*table.ranks[:-1], ASIDE])
-    each = [sentence(side) for side in shown]
-    meant = [f"{side.direction.label}: {text}" for side, text in zip(shown, each, strict=True)]
-    first = [f"{heading(mechanism)}. {each[0][:1].upper()}{each[0][1:]}"]
-    sentences = first if len(shown) == 1 else [heading(mechanism), *meant]
-    sentences += [f"Caution: {text}" for text in early]
-    before = len(sentences)
-    if structure.why_no_block is None:
-        sentences.append(
-            Aside(
-                "The rotation phi of the structure is kappa times the rotation theta of its equivalent block; both "
-                "kappas preserve the critical rotation. How closely the block follows the structure depends on the "
-                "amplitude: compare free periods and overturning times with `rocking error`, and time histories with "
-                "`rocking respond`."
-            )
-        )
+    labels = [f"{side.direction.label} direction" for side in shown]
+    where = [f"{heading(mechanism)}, {labels[0]}", labels[-1].capitalize()] if shown[1:] else [heading(mechanism)]
+    first = [f"{place}. {sentence(side)}" for place, side in zip(where, shown, strict=True)]
+    first += [f"Caution: {text}" for text in before_rocking(mechanism)]
+    sentences = [] if structure.why_no_block else [Aside(KAPPAS)]
     sentences += [f"Caution: {structure.misleading}."] if structure.misleading else []
     sentences += [*hung_in_words(mechanism), *([] if mechanism.rocks_both_ways else [restitution_used(structure)])]
     sentences += [f"P{mechanism.crushing.words[1:]}."] if mechanism.crushing else []
     sentences += [
         f"Caution: {text}" for text in (*of_restitution(mechanism), *of_bounds(mechanism), *mechanism.cautions())
     ]
-    return View(data, [*sentences[:before], table, *sentences[before:]])
+    return View(data, [*first, table, *sentences])
 
 
 def _columns(mechanism: Mechanism, directions: Sequence[Direction]) -> Iterator[Column[Mapping[str, float]]]:
@@ -225,7 +220,7 @@ def kappa_in_words(block: EquivalentBlock) -> str:
 def sentence(side: EquivalentSide) -> str:
     """Return what the block of a direction means, and which kappa to prefer; without a block, why there is none."""
     if (block := side.block) is not None:
-        known = f"uplift at {block.lambda_:.4g} g, critical rotation {degrees(block.phi_cr):.4g} deg"
+        known = f"Uplift at {block.lambda_:.4g} g, critical rotation {degrees(block.phi_cr):.4g} deg"
         return f"{known}, p = {block.p:.4g} rad/s. {kappa_in_words(block)}"
     statics = side.statics
     grows = "increases" if statics.stiffening > 0 else "decreases"
@@ -237,7 +232,7 @@ def sentence(side: EquivalentSide) -> str:
         else f"the moment first vanishes at {statics.phi_cr:.4g} rad"
     )
     return (
-        f"the structure has no equivalent single block: {statics.why_no_block}. It uplifts at {statics.lambda_:.4g} "
+        f"The structure has no equivalent single block: {statics.why_no_block}. It uplifts at {statics.lambda_:.4g} "
         f"g; its restoring moment then {grows} by {abs(statics.stiffening):.4g} times its initial value per rad; "
         f"{ends}. Nonlinear time histories are available; linear models, closed forms and maps in terms of p are not."
     )
