@@ -11,7 +11,7 @@ from rocking_cli import names
 from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.dynamics.history import MIN_IMPACT_RATE, BlockPeaks, History, contact_lost
-from rocking_cli.dynamics.model import ModelName
+from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.sliding import Slid
 from rocking_cli.dynamics.verdict import Agreement, disagree
@@ -40,6 +40,7 @@ from rocking_cli.views.verdict import (
 )
 from rocking_cli.views.view import ASIDE, Aside, Table, View, force_unit, in_degrees, number, processing_data
 
+LINEAR = frozenset(MODELS[1:])  # the models that are equivalent blocks
 MAX_LISTED_IMPACTS = 12  # number of impacts of a model in its table; the data have all
 
 
@@ -122,7 +123,7 @@ def runs_data(
             "agreement": {
                 name: data_of(AGREEMENT, found.agreement[sign][name]) if name in found.agreement[sign] else None
                 for name in histories
-                if is_linear(name) and "nonlinear" in histories
+                if name in LINEAR and "nonlinear" in histories
             },
             "neighbours": neighbours_data(found.neighbours[sign]) if sign in found.neighbours else None,
             "verdict": verdict(histories, found.agreement[sign], found.assumed_friction(sign)),
@@ -163,15 +164,10 @@ def histories_data(
     return data
 
 
-def is_linear(model: str) -> bool:
-    """Return whether a model is an equivalent block."""
-    return model not in ("nonlinear", "blocks")
-
-
 def models_used(models: Iterable[ModelName]) -> Iterator[str]:
     """Yield a sentence on what the models are; none for the nonlinear model alone."""
     names = list(models)
-    linear = [name for name in names if is_linear(name)]
+    linear = [name for name in names if name in LINEAR]
     if linear:
         itself = "nonlinear is the structure itself, " if "nonlinear" in names else ""
         scaled = " and ".join(name.replace("linear", "kappa") for name in linear)
@@ -359,7 +355,7 @@ def view(
     rocks = structure.no_model is None
     remarks = cautions_of(mechanism) if rocks else [f"{structure.no_model}. Free blocks alone have no rotation phi."]
     caution = [f"Caution: {text}" for text in remarks]
-    if rocks and structure.misleading and any(map(is_linear, first)):
+    if rocks and structure.misleading and not LINEAR.isdisjoint(first):
         caution.append(f"Caution: {structure.misleading}.")
     caution += [f"Caution: {text}" for text in apart(watched, found.runs)]
     caution += not_checked(mechanism, first.values())
@@ -430,7 +426,7 @@ def _tables(
         both = found.engines.get(sign)
         compared = joints_across(both, found.contacts[sign]) if both is not None and not conditions.goes_on else ()
         itself, of_blocks, doubts = verdicts(histories, found.agreement[sign], found.assumed_friction(sign))
-        shown = linear or disagree(histories) or not any(map(is_linear, histories))
+        shown = linear or disagree(histories) or LINEAR.isdisjoint(histories)
         parts.append(f"{under}. {' '.join([*itself, *of_blocks * shown, *doubts])}")
         if sign in found.neighbours:
             following = "" if end.remedy else next_in_words(end)
@@ -486,7 +482,7 @@ def outcome_table(
         f"{head},\nuntil {number(run.known_to, 4)} s" if run.unknown else head
         for head, run in zip(model_heads(found.runs[sign], unknown=unknown), runs, strict=True)
     ]
-    aside = [is_linear(run.model) and not linear for run in runs]
+    aside = [run.model in LINEAR and not linear for run in runs]
     if aside.count(False) == 1:
         stated = "outcome", "known until", f"peak rotation / {over}", f"lower bound of peak / {over}"
         columns = [replace(each, rank=ASIDE) if each.head in stated else each for each in columns]

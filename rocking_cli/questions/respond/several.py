@@ -25,7 +25,7 @@ from rocking_cli.views.column import Column, frame_of, of, only_shown, rounded, 
 from rocking_cli.views.conclusion import MAX_NAMED_MOTIONS, counted
 from rocking_cli.views.engines import engines_in_words
 from rocking_cli.views.neighbours import deviations, neighbour_columns
-from rocking_cli.views.response import apart, is_linear, model_heads, models_used
+from rocking_cli.views.response import LINEAR, apart, model_heads, models_used
 from rocking_cli.views.restitution import heading_of_run, restitution_sentences
 from rocking_cli.views.verdict import GO_ON, contact_parts, unchecked, unknown_after
 from rocking_cli.views.view import ABSENT, ASIDE, Aside, Table, number
@@ -118,7 +118,7 @@ class Several:
         yield only_shown(f"peak phi/{'limit' if any(self._free) else 'phi_cr'}\nunder", of("name"), text=True)
         yield only_shown("PGA\n[g]", of("pga"))
         for model, head in zip(self._models, model_heads(self._models, unknown=bool(self._until)), strict=True):
-            yield only_shown(head, partial(_fate_of, model), rank=ASIDE * (is_linear(model) and not self._linear))
+            yield only_shown(head, partial(_fate_of, model), rank=ASIDE * (model in LINEAR and not self._linear))
         if "nonlinear" in self._models or self._engine == "exact":  # free blocks do not move as the mechanism does
             yield from self._peaks()
         if self._around is not None:
