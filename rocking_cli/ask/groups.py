@@ -213,22 +213,6 @@ class ForRecords(AskedModel):
     on_floor: bool = option("The motions are those of the floor of the site, and not of the ground.", default=False)
 
 
-class MaybeUnderMotion(MaybeUnderMotions):
-    """A question about one ground motion, if any is given."""
-
-    motions: Motion | Sequence[Motion] | Motions = option(
-        "The ground motion, its file, or a pulse as text.", where="input", default=()
-    )
-    polarity: OnePolarity = polarity(allowed="1 -1")
-
-    @model_validator(mode="after")
-    def _one_motion(self) -> Self:
-        """Refuse several motions."""
-        if (count := self.ground_motions.count) > 1:
-            raise InputError(f"{count} motions are given where one is expected: ask for one after the other")
-        return self
-
-
 class SizedPulse(AskedModel):
     """A question about one pulse, by its amplitude, period and shape."""
 

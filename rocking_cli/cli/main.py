@@ -24,7 +24,7 @@ from rocking_cli import __version__
 from rocking_cli.cli import terminal
 from rocking_cli.cli.help import HelpFormatter
 from rocking_cli.errors import InputError, Problem, RockingError
-from rocking_cli.plugins.rooms import commands, short_help
+from rocking_cli.plugins.rooms import commands, headed, short_help
 from rocking_cli.text import cut, keeps_formulas, one_line, printable
 
 NO_MEMORY = "Could not allocate memory", "can't start new thread"  # of MuJoCo, and of Python
@@ -143,8 +143,12 @@ class LazyGroup(click.Group):
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         """Write the commands and what they do, without importing them."""
-        with formatter.section("Commands"):
-            formatter.write_dl([(name, short_help(name)) for name in commands()])
+        formatter.write_paragraph()
+        widest = max(map(len, commands()))
+        for heading, listed in headed().items():
+            formatter.write_heading(heading)
+            with formatter.indentation():
+                formatter.write_dl([(name.ljust(widest), text) for name, text in listed])
 
     def resolve_command(
         self, ctx: click.Context, args: list[str]
@@ -213,47 +217,30 @@ class LazyGroup(click.Group):
             terminal.detail(f"took {monotonic() - began:.2f} s")
 
 
-@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
-@click.version_option(__version__, prog_name="rocking")
-@click.option(
-    "-v", "--verbose", is_flag=True, help="Show more detail: where inputs come from and how long each step takes."
+@click.group(
+    cls=LazyGroup,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+    epilog="Exit codes: 0 done, whatever the outcome; 1 system, 2 input, 3 mechanism or plugin, 4 solver or selfcheck; "
+    "5 done, but not for the records or runs that are named; 128 + n signal n.",
 )
+@click.version_option(__version__, prog_name="rocking")
+@click.option("-v", "--verbose", is_flag=True, help="Show all, where inputs come from and how long it takes.")
 @click.option(
     "--debug",
     is_flag=True,
     default=lambda: os.environ.get("ROCKING_DEBUG") == "1",
-    help="Show the Python traceback of any error.",
+    help="Show the Python traceback of errors (or ROCKING_DEBUG=1).",
 )
-@click.option(
-    "--formulas", is_flag=True, help="Leave texts of CSV tables as they are, even if a spreadsheet would compute them."
-)
+@click.option("--formulas", is_flag=True, help="Leave texts in CSV tables that a spreadsheet would compute.")
 def main(verbose: bool, debug: bool, formulas: bool) -> None:
     """Rocking response of structures in earthquakes.
-
-    Describe a structure in a YAML file and compute its equivalent rocking block, its response to ground motions and
-    pulses, its margin to overturning, and its verification by code.
 
     \b
     Start with:
       rocking new block > block.yaml
       rocking draw block.yaml
-      rocking equiv block.yaml
-      rocking record accel.csv
       rocking respond block.yaml --record accel.csv --plot response.png
       rocking margin block.yaml --record accel.csv
-      rocking survey parapets.csv --page parapets.html
-      rocking pulse --a 4 --omega 6
-      rocking overturning block.yaml --plot map.png
-      rocking fragility study.yaml
-      rocking spectrum block.yaml --record "records/*.AT2"
       rocking verify block.yaml --site site.yaml
-      rocking report block.yaml --record accel.csv -o report.html
-
-    Exit codes: 0 success (also if the structure overturns or fails a verification), 1 system error (such as a full
-    disk), 2 invalid input, 3 mechanism or plugin error, 4 solver error, or a check of selfcheck failed, 5 completed,
-    but the records or runs named in the output were skipped; 128 + n terminated by signal n.
-
-    Put -v, --debug and --formulas before the command: rocking --debug equiv block.yaml. ROCKING_DEBUG=1 in the
-    environment has the same effect as --debug.
     """
     click.get_current_context().call_on_close(partial(keeps_formulas.reset, keeps_formulas.set(formulas)))

@@ -2,8 +2,8 @@
 
 A folder `margin` with an `asked.py`, or a `command.py`, is the command `rocking margin`, and with a `verb.py` the verb
 `rocking_cli.margin`. A `results_asked.py`, or a `results_command.py`, is a second command. The `__init__.py` says in
-its first line what the command does, where it stands among the others (`PLACE`), which further names its modules offer
-(`MORE`), and what further commands do (`SHORT_HELP`).
+its first line what the command does, where it stands among the others (`PLACE`, the hundreds of which are the heading
+in the help), which further names its modules offer (`MORE`), and what further commands do (`SHORT_HELP`).
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from pkgutil import iter_modules
 from typing import NamedTuple
 
 QUESTIONS = "rocking_cli.questions"
+HEADINGS = "Structures", "Ground motions", "Response", "Decisions", "Studies and installation"
 ASKED = "asked"  # module name of the question of a command
 COMMAND_SUFFIX = re.compile("_(asked|command)$")  # of the module of a second command of a folder: `results_asked`
 
@@ -43,6 +44,15 @@ def commands() -> dict[str, str]:
 def short_help(command: str) -> str:
     """Return what a command does, in a few words."""
     return next(room.shorts[command] for room in _rooms() if command in room.shorts)
+
+
+def headed() -> dict[str, list[tuple[str, str]]]:
+    """Return the commands under each heading of the help, and what they do in a few words."""
+    place_of = {name: room.place for room in _rooms() for name in room.shorts}
+    return {
+        heading: [(name, short_help(name)) for name in commands() if place_of[name] // 100 == k]
+        for k, heading in enumerate(HEADINGS, 1)
+    }
 
 
 @cache

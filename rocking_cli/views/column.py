@@ -178,18 +178,26 @@ def table_across(
     heads: Sequence[str],
     rows: Sequence[R],
     after: Mapping[str, Callable[[Column[R]], str]] = UNIT,
+    aside: Sequence[bool] = (),
 ) -> Table:
     """Return a table with a line for each column, and the rows side by side under their own headings.
 
-    `after` has what follows in each line, by its heading.
+    `after` has what follows in each line, by its heading. Terminals show the rows that are `aside`, and lines in which
+    no other row has a value, with --all only.
     """
     seen = [column for column in columns if column.head is not None]
     lines = [
         [column.head or "", *(column.cell(row) for row in rows), *(text_of(column) for text_of in after.values())]
         for column in seen
     ]
-    asides = [k for k, column in enumerate(seen) if column.rank == ASIDE]
-    return Table(title, ["", *heads, *after], lines, range(1, len(rows) + 1), asides=asides)
+    ranks = [0, *(ASIDE * each for each in aside or [False] * len(rows)), *(0 for _ in after)]
+    kept = [k for k in range(1, len(rows) + 1) if ranks[k] < ASIDE]
+    asides = [
+        k
+        for k, (column, line) in enumerate(zip(seen, lines, strict=True))
+        if column.rank == ASIDE or {line[place] for place in kept} == {ABSENT}
+    ]
+    return Table(title, ["", *heads, *after], lines, range(1, len(rows) + 1), ranks, asides)
 
 
 def long_name(name: str) -> str:

@@ -18,7 +18,7 @@ from rocking_cli.studies.engines import Engine, EngineName
 from rocking_cli.studies.engines.free_blocks import COLLAPSE
 from rocking_cli.views.column import Column, data_of, of, of_part, only_shown, rounded, table_of
 from rocking_cli.views.verdict import ends, unknown_after
-from rocking_cli.views.view import Table, number
+from rocking_cli.views.view import Aside, Table, number
 
 if TYPE_CHECKING:
     from rocking_cli.studies.both_engines import BlockJoint, BothEngines
@@ -45,22 +45,23 @@ def engines_in_words(engine: EngineName, by_blocks: int, mechanism: Mechanism, o
     if engine == "exact":
         return []
     if not by_blocks:
-        return [ALL_EXACT]
+        return [Aside(ALL_EXACT)]
     histories = "1 history" if by_blocks == 1 else f"{by_blocks} histories"
     given = mechanism.friction is not None
     friction = (
         f"{mechanism.friction:g}, as given" if given else f"{MASONRY_FRICTION:g}, as usual for masonry: none is given"
     )
-    return [blocks_in_words(engine, histories, friction, off_edge)]
+    return [*blocks_in_words(engine, histories, friction, off_edge)]
 
 
-def blocks_in_words(engine: EngineName, histories: str, friction: str, off_edge: int) -> str:
-    """Return which histories free blocks give, and how: their collapse, impacts, friction and falls, in words."""
+def blocks_in_words(engine: EngineName, histories: str, friction: str, off_edge: int) -> Iterator[str]:
+    """Yield which histories free blocks give, and how: their friction and falls, collapse and impacts, in words."""
     off = f" In {off_edge:,} of them, a block falls off an edge that the file draws: they count as overturned."
     others = "; one degree of freedom for all others" if engine == "auto" else ""
-    return (
-        f"Engine: free blocks (MuJoCo) for {histories}{others}. Overturning is collapse: {COLLAPSE}. Impacts lose the "
-        f"energy that contact takes, whatever restitution is given. Friction is {friction}.{off * (off_edge > 0)}"
+    yield (f"Engine: free blocks (MuJoCo) for {histories}{others}. Their friction is {friction}.{off * (off_edge > 0)}")
+    yield Aside(
+        f"Overturning of free blocks is collapse: {COLLAPSE}. Impacts lose the energy that contact takes, whatever "
+        "restitution is given."
     )
 
 

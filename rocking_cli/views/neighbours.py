@@ -29,9 +29,10 @@ def deviations(around: Neighbourhood) -> str:
 
 def neighbours_in_words(near: Neighbours) -> str:
     """Return how many neighbours overturn, or are of unknown outcome, and the peaks of the others in a sentence."""
-    of = f"{near.around.count} neighbouring motions ({deviations(near.around)})"
+    of = f"{near.around.count} neighbouring motions"
+    how = f" ({deviations(near.around)})."
     if not near.lifted:
-        return f"None of {of} uplifts the structure."
+        return f"None of {of} uplifts the structure{how}"
     sentences = [f"Of {of}, {_shares(near)}"]
     low, median, high = near.peak_ratio
     if near.slides:
@@ -39,19 +40,22 @@ def neighbours_in_words(near: Neighbours) -> str:
         if 0 < near.slip[1] < inf:
             sentences.append(f"the median slip is {near.slip[1]:.2g} m")
         if near.slides + (near.unknown or 0.0) == 1:
-            return f"{'; '.join(sentences)}."
+            return "; ".join(sentences) + how
     if high == 0 and not near.slides:
-        return f"{sentences[0]}; at most one in six uplifts it."
+        return f"{sentences[0]}; at most one in six uplifts it{how}"
     enough = near.around.count >= MIN_NEIGHBOURS_OF_QUANTILES
     if median == 0 or (low == 0 and enough):
         sentences.append(f"{'half' if median == 0 else '16 %'} do not uplift it")
     if 0 < median < inf:
         sentences.append(f"the median peak is {median:.2g} {near.over}")
     # The highest known fractile of the peaks of the neighbours.
-    part, most = ("84 %", high) if high < inf else ("16 %", low if isinf(median) else 0.0)
-    if enough and 0 < most < inf:
+    part, others, most = ("84 %", "16 %", high) if high < inf else ("16 %", "84 %", low if isinf(median) else 0.0)
+    if enough and 0 < most <= 1:
         sentences.append(f"{part} stay below {most:.2g} {near.over}")
-    return f"{'; '.join(sentences)}."
+    elif enough and 1 < most < inf:
+        ends = "overturn or are unknown" if near.unknown else "overturn"
+        sentences.append(f"{others} pass the critical rotation ({most:.2g} {near.over}) or {ends}")
+    return "; ".join(sentences) + how
 
 
 def _count(near: Neighbours, share: float) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import fields
+from dataclasses import fields, replace
 from math import degrees, inf, sqrt
 from typing import Any, NamedTuple
 
@@ -11,10 +11,10 @@ from rocking_cli import names
 from rocking_cli.arrays import Reals
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.dynamics.history import MIN_IMPACT_RATE, BlockPeaks, History, contact_lost
-from rocking_cli.dynamics.model import ModelName
+from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.sliding import Slid
-from rocking_cli.dynamics.verdict import Agreement
+from rocking_cli.dynamics.verdict import Agreement, disagree
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.excitation.pulses import Pulse
@@ -24,13 +24,23 @@ from rocking_cli.studies.neighbours import Conditions
 from rocking_cli.studies.response import ByPolarity, Histories, Response
 from rocking_cli.views.cautions import bound_data, cautions_of
 from rocking_cli.views.column import Column, data_of, of, of_part, only_shown, rounded, table_across, table_of
-from rocking_cli.views.conclusion import conclusion_data, governing_polarity, headline, next_in_words
+from rocking_cli.views.conclusion import conclusion_data, governing_polarity, next_in_words
 from rocking_cli.views.engines import agreement, engines_data, engines_in_words, joints_across, joints_shown
 from rocking_cli.views.neighbours import neighbours_data, neighbours_in_words
-from rocking_cli.views.restitution import restitution_data, restitution_used
-from rocking_cli.views.verdict import ONE_SAMPLE, SENSE, contact_data, contact_words, unchecked, verdict, why_unknown
-from rocking_cli.views.view import Table, View, force_unit, in_degrees, number, processing_data
+from rocking_cli.views.restitution import restitution_data, restitution_sentences
+from rocking_cli.views.verdict import (
+    ONE_SAMPLE,
+    SENSE,
+    contact_data,
+    contact_parts,
+    unchecked,
+    verdict,
+    verdicts,
+    why_unknown,
+)
+from rocking_cli.views.view import ASIDE, Aside, Table, View, force_unit, in_degrees, number, processing_data
 
+LINEAR = frozenset(MODELS[1:])  # the models that are equivalent blocks
 MAX_LISTED_IMPACTS = 12  # number of impacts of a model in its table; the data have all
 
 
@@ -113,7 +123,7 @@ def runs_data(
             "agreement": {
                 name: data_of(AGREEMENT, found.agreement[sign][name]) if name in found.agreement[sign] else None
                 for name in histories
-                if name not in ("nonlinear", "blocks") and "nonlinear" in histories
+                if name in LINEAR and "nonlinear" in histories
             },
             "neighbours": neighbours_data(found.neighbours[sign]) if sign in found.neighbours else None,
             "verdict": verdict(histories, found.agreement[sign], found.assumed_friction(sign)),
@@ -157,14 +167,14 @@ def histories_data(
 def models_used(models: Iterable[ModelName]) -> Iterator[str]:
     """Yield a sentence on what the models are; none for the nonlinear model alone."""
     names = list(models)
-    linear = [name for name in names if name not in ("nonlinear", "blocks")]
+    linear = [name for name in names if name in LINEAR]
     if linear:
         itself = "nonlinear is the structure itself, " if "nonlinear" in names else ""
         scaled = " and ".join(name.replace("linear", "kappa") for name in linear)
         what = (
             f"{' and '.join(linear)} {'are' if len(linear) > 1 else 'is'} its linearised equivalent block with {scaled}"
         )
-        yield f"Models: {itself}{what} (see `rocking equiv`)."
+        yield Aside(f"Models: {itself}{what} (see `rocking equiv`).")
 
 
 def ending(outcome: OneOutcome) -> str:
@@ -297,7 +307,9 @@ def _impacts(impacts: Reals, etas: tuple[float, float]) -> Iterator[Impact]:
         yield Impact(time, Direction(int(sign)), rate, etas[0 if sign > 0 else 1] * rate)
 
 
-def view(found: Response, conditions: Conditions, title: str, doubts: Sequence[str] = (), *, impacts: bool) -> View:
+def view(
+    found: Response, conditions: Conditions, title: str, doubts: Sequence[str] = (), *, impacts: bool, linear: bool
+) -> View:  # fmt: skip
     """Show the responses to one motion.
 
     Parameters
@@ -312,6 +324,8 @@ def view(found: Response, conditions: Conditions, title: str, doubts: Sequence[s
         Doubts about the structure, as sentences.
     impacts : bool
         Whether to list the impacts: the first in a table, without chatter, all in the data.
+    linear : bool
+        Whether equivalent blocks are shown on terminals without --all too.
     """
     structure, given = conditions.structure, found.given
     mechanism = structure.mechanism
@@ -327,26 +341,27 @@ def view(found: Response, conditions: Conditions, title: str, doubts: Sequence[s
         **runs_data(found, watched, etas, structure),
     }
     if found.fit is None or found.to_pulse is None:
-        parts = _tables(title, found, conditions, watched, etas)
+        parts = _tables(title, found, conditions, watched, etas, linear=linear)
     else:
         pulse = found.fit.pulse.title
         data |= {"pulse": fit_data(found.fit), "pulse_responses": histories_data(found.to_pulse, 1, watched, etas)}
         parts = [
-            *_tables(f"{title}, under the record", found, conditions, watched, etas),
+            *_tables(f"{title}, under the record", found, conditions, watched, etas, linear=linear),
             "",
-            *_tables(f"{title}, under the {pulse} alone", found.to_pulse, conditions, watched, etas),
+            *_tables(f"{title}, under the {pulse} alone", found.to_pulse, conditions, watched, etas, linear=linear),
             share_of_pulse(found, found.to_pulse, pulse),
         ]
     first = next(iter(found.runs.values()))
     rocks = structure.no_model is None
     remarks = cautions_of(mechanism) if rocks else [f"{structure.no_model}. Free blocks alone have no rotation phi."]
     caution = [f"Caution: {text}" for text in remarks]
-    if rocks and structure.misleading and any(name not in ("nonlinear", "blocks") for name in first):
+    if rocks and structure.misleading and not LINEAR.isdisjoint(first):
         caution.append(f"Caution: {structure.misleading}.")
     caution += [f"Caution: {text}" for text in apart(watched, found.runs)]
     caution += not_checked(mechanism, first.values())
-    joints = ["Joints are named as in `rocking draw`."] if any(each.joint for each in found.contacts.values()) else []
-    restitution = [restitution_used(structure)] if "nonlinear" in first else []
+    named = any(each.joint for each in found.contacts.values())
+    joints = [Aside("Joints are named as in `rocking draw`.")] if named else []
+    restitution = [*restitution_sentences(structure)] if "nonlinear" in first else []
     by_blocks = sum("blocks" in runs for runs in found.runs.values())
     engine = "auto" if by_blocks and conditions.goes_on else conditions.engine
     restitution += engines_in_words(engine, by_blocks, mechanism)
@@ -382,12 +397,13 @@ def vertical_notes(motion: GroundMotion | None, gravity: float, until: float = i
     v = motion.vertical.acceleration / gravity
     low, high = 1 + min(float(v.min()), 0.0), 1 + max(float(v.max()), 0.0)
     swing = f"{sqrt(low):.2f} to {sqrt(high):.2f} times" if low > 0 else f"nothing to {sqrt(high):.2f} times"
-    sentences = [
+    sentence = (
         f"Vertical ground motion: gravity as the structure feels it, g + v_g'', goes from {low:.3g} g to {high:.3g} g. "
         "All histories take it into account, at uplift and in the restoring force. The parameters of the equivalent "
         f"block are those of constant g: its frequency parameter p would go from {swing} the value given, which closed "
         "forms and spectra over p leave out."
-    ]
+    )
+    sentences: list[str] = [Aside(sentence)]
     lost = contact_lost(motion, gravity)
     if lost is not None and lost <= until:
         sentences.append(
@@ -398,9 +414,10 @@ def vertical_notes(motion: GroundMotion | None, gravity: float, until: float = i
 
 
 def _tables(
-    title: str, found: Response, conditions: Conditions, watched: Watched, etas: tuple[float, float] | None = None
-) -> list[Table | str]:
-    """Return a table and sentences for each polarity, and which of two governs; joints of free blocks if requested."""
+    title: str, found: Response, conditions: Conditions, watched: Watched, etas: tuple[float, float] | None = None,
+    *, linear: bool,
+) -> list[Table | str]:  # fmt: skip
+    """Return sentences and a table for each polarity, and which of two governs; joints of free blocks if requested."""
     parts: list[Table | str] = []
     free = next(iter(found.values())).ends_at_limit
     for sign, histories in found.runs.items():
@@ -408,9 +425,14 @@ def _tables(
         end = found.conclusions[sign]
         both = found.engines.get(sign)
         compared = joints_across(both, found.contacts[sign]) if both is not None and not conditions.goes_on else ()
-        heading = f"{under} ({headline(end, names.peaks_over(free))})"
-        parts.append(outcome_table(heading, found, sign, watched, compared))
-        parts.append(verdict(histories, found.agreement[sign], found.assumed_friction(sign)))
+        itself, of_blocks, doubts = verdicts(histories, found.agreement[sign], found.assumed_friction(sign))
+        shown = linear or disagree(histories) or LINEAR.isdisjoint(histories)
+        parts.append(f"{under}. {' '.join([*itself, *of_blocks * shown, *doubts])}")
+        if sign in found.neighbours:
+            following = "" if end.remedy else next_in_words(end)
+            parts.append(f"{neighbours_in_words(found.neighbours[sign])} {following}".rstrip())
+        parts.append(outcome_table(found, sign, watched, compared, linear=shown))
+        parts += [Aside(" ".join(of_blocks))] * bool(of_blocks and not shown)
         if both is not None:
             parts.append(agreement(both))
             if not both.exact.unknown:
@@ -418,24 +440,24 @@ def _tables(
             parts += [] if conditions.goes_on else joints_shown(both, conditions.structure.opening)
         if sign in found.no_blocks:
             parts.append(f"{found.no_blocks[sign][:1].upper()}{found.no_blocks[sign][1:]}.")
-        if sign in found.neighbours:
-            following = "" if end.remedy else next_in_words(end)
-            parts.append(f"{neighbours_in_words(found.neighbours[sign])} {following}".rstrip())
-        if sign in found.contacts and (sentences := contact_words(found.contacts[sign], watched.mechanism)):
-            parts.append(sentences)
+        if sign in found.contacts:
+            parts += contact_parts(found.contacts[sign], watched.mechanism)
         if etas is not None:
             for name, run in ((name, run) for name, run in histories.items() if not run.by_blocks):
                 parts += ["", *_impact_table(f"{under}: impacts, {name}", run, etas)]
         parts += [""] if len(found.runs) > 1 else []
     if len(found.runs) > 1:
-        parts.append(governing_polarity(found.conclusions, found.conclusion.polarity, names.peaks_over(free)))
+        parts.insert(0, governing_polarity(found.conclusions, found.conclusion.polarity, names.peaks_over(free)))
     return parts
 
 
 def outcome_table(
-    title: str, found: Response, sign: int, watched: Watched, more: Iterable[Column[History]] = ()
+    found: Response, sign: int, watched: Watched, more: Iterable[Column[History]] = (), *, linear: bool
 ) -> Table:  # fmt: skip
-    """Return a table of outcomes, peaks and times under one polarity, with a column for each model, and more rows."""
+    """Return a table of outcomes, peaks and times under one polarity, with a column for each model, and more rows.
+
+    Terminals show what the sentences above it state with --all only, and so equivalent blocks if not `linear`.
+    """
     runs = list(found.runs[sign].values())
     unknown = any(run.unknown for run in runs)
     free = runs[0].ends_at_limit
@@ -460,7 +482,11 @@ def outcome_table(
         f"{head},\nuntil {number(run.known_to, 4)} s" if run.unknown else head
         for head, run in zip(model_heads(found.runs[sign], unknown=unknown), runs, strict=True)
     ]
-    return table_across(title, columns, heads, runs)
+    aside = [run.model in LINEAR and not linear for run in runs]
+    if aside.count(False) == 1:
+        stated = "outcome", "known until", f"peak rotation / {over}", f"lower bound of peak / {over}"
+        columns = [replace(each, rank=ASIDE) if each.head in stated else each for each in columns]
+    return table_across("", columns, heads, runs, aside=aside)
 
 
 def model_heads(models: Iterable[str], *, unknown: bool) -> list[str]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import isclose
 from typing import Any
 
 from rocking_cli.structure import Structure
 from rocking_cli.views.verdict import SENSE
-from rocking_cli.views.view import heading
+from rocking_cli.views.view import Aside, heading
 
 ETA_TOLERANCE = 1e-9
 MIN_DOUBTFUL_ETA = 0.97  # restitution from kinematics above which tests of slender bodies measured less
@@ -36,28 +37,31 @@ def restitution_data(structure: Structure) -> dict[str, Any]:
 
 
 def restitution_used(structure: Structure) -> str:
-    """Return a sentence on the restitution that the histories used."""
+    """Return the sentences on the restitution that the histories used as one text."""
+    return " ".join(restitution_sentences(structure))
+
+
+def restitution_sentences(structure: Structure) -> Iterator[str]:
+    """Yield sentences on the restitution that the histories used, and what tests found."""
     source = structure.restitution_source
     if not structure.mechanism.rocks_both_ways:
         only = f"{SENSE[structure.mechanism.directions[0]]} only, away from the supports that it leans on"
-        if source == "missing":
-            return (
-                f"The structure rocks {only}. Its rebound is not given: static results do not depend on it, time "
-                "histories require it."
-            )
-        return (
-            f"The structure rocks {only}. After an impact on them, its angular velocity is "
-            f"{structure.etas[0]:.4g} of that before (the rebound, {SOURCES[source]})."
+        yield f"The structure rocks {only}. " + (
+            "Its rebound is not given: static results do not depend on it, time histories require it."
+            if source == "missing"
+            else f"After an impact on them, its angular velocity is {structure.etas[0]:.4g} of that before (the "
+            f"rebound, {SOURCES[source]})."
         )
+        return
     positive, negative = structure.etas
     values = f"{positive:.4g}"
     if not isclose(positive, negative, rel_tol=ETA_TOLERANCE):
         values += f" at impacts that end clockwise rotation and {negative:.4g} at the others"
-    sentence = f"Coefficient of restitution eta = {values}, {SOURCES[source]}."
-    if source != "kinematics" or not 0 < min(structure.etas) <= max(structure.etas) < 1 + ETA_TOLERANCE:
-        return sentence
-    slender = " and for bodies as slender as this, about 0.95" if max(structure.etas) > MIN_DOUBTFUL_ETA else ""
-    return (
-        f"{sentence} Tests found higher values for concrete and stone (Kalliontzis et al. 2016; Ther and Kollar "
-        f"2017), and lower ones for soft or worn feet (ElGawady et al. 2011){slender}."
-    )
+    yield f"Coefficient of restitution eta = {values}, {SOURCES[source]}."
+    if source == "kinematics" and 0 < min(structure.etas) <= max(structure.etas) < 1 + ETA_TOLERANCE:
+        slender = max(structure.etas) > MIN_DOUBTFUL_ETA
+        yield (str if slender else Aside)(
+            "Tests found higher values for concrete and stone (Kalliontzis et al. 2016; Ther and Kollar 2017), and "
+            "lower ones for soft or worn feet (ElGawady et al. 2011)"
+            f"{' and for bodies as slender as this, about 0.95' if slender else ''}."
+        )

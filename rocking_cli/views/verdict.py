@@ -19,7 +19,7 @@ from rocking_cli.dynamics.verdict import NEAR_OVERTURNING, SAME_PEAK_DELAY, Agre
 from rocking_cli.names import percent
 from rocking_cli.studies.contact import NEAR_PEAK, ContactDemand, SupportDemand
 from rocking_cli.views.column import Column, data_of, of, rounded
-from rocking_cli.views.view import ABSENT, force_unit, number
+from rocking_cli.views.view import ABSENT, Aside, force_unit, number
 
 SENSE = {Direction.POSITIVE: "clockwise", Direction.NEGATIVE: "anticlockwise"}
 TIME_TOLERANCE = 1e-2  # s within which two events are at the same time
@@ -202,6 +202,16 @@ def verdict(
 ) -> str:
     """Return whether a structure uplifts, how far it rocks, whether it overturns, and which model to trust, in words.
 
+    Arguments are those of `verdicts`.
+    """
+    return " ".join(sentence for part in verdicts(histories, agreed, assumed_friction) for sentence in part)
+
+
+def verdicts(
+    histories: Mapping[ModelName, History], agreed: Mapping[ModelName, Agreement], assumed_friction: float | None = None
+) -> tuple[list[str], list[str], list[str]]:
+    """Return sentences on the structure, on its equivalent blocks, and on what to do before relying on either.
+
     Parameters
     ----------
     histories : mapping of str to History
@@ -211,16 +221,12 @@ def verdict(
     assumed_friction : float, optional
         Friction that the result assumes, see `joints_in_words`.
 
-    Returns
-    -------
-    str
-        A few sentences.
     """
     blocks = histories.get("blocks")
     histories = {name: run for name, run in histories.items() if name != "blocks"}
     if not histories:
         assert blocks is not None
-        return f"As free blocks, the structure {blocks_do(blocks)}."
+        return [f"As free blocks, the structure {blocks_do(blocks)}."], [], []
     best: ModelName = "nonlinear" if "nonlinear" in histories else next(iter(histories))
     run = histories[best]
     by = "" if best == "nonlinear" or len(histories) == 1 else f"By {best} the"
@@ -230,19 +236,19 @@ def verdict(
     if blocks is not None and not run.unknown:
         sentences.append(f"As free blocks, it {blocks_do(blocks)}.")
     if (run.unknown or run.slip) and len(histories) > 1:
-        sentences += [NO_JOINTS] if run.bound is None else []
+        linear = [NO_JOINTS] if run.bound is None else []
     else:
-        sentences += blocks_in_words(histories, agreed, {name: name for name in histories})
+        linear = blocks_in_words(histories, agreed, {name: name for name in histories})
+    cautions = []
     if not run.unknown and disagree(histories):
-        sentences.append("Do not trust any of them alone: run weaker and stronger motions as well.")
+        cautions.append("Do not trust any of them alone: run weaker and stronger motions as well.")
     elif not run.fell and not run.unknown and run.peak_ratio > NEAR_OVERTURNING and not any(run.ends_at_limit):
-        sentences.append("This is close to overturning: run weaker and stronger motions before relying on it.")
-    still = [name for name, each in histories.items() if each.still_rocking]
-    if still:
-        sentences.append(
+        cautions.append("This is close to overturning: run weaker and stronger motions before relying on it.")
+    if still := [name for name, each in histories.items() if each.still_rocking]:
+        cautions.append(
             f"{', '.join(still)}: {names.STILL_ROCKING} long after the end of the record, and certain not to overturn."
         )
-    return " ".join(sentences)
+    return sentences, linear, cautions
 
 
 def ends(run: History) -> str:
@@ -410,14 +416,19 @@ def _lost(time: float) -> str:
 
 
 def contact_words(found: ContactDemand, mechanism: Mechanism) -> str:
-    """Return the demands as sentences; empty for a structure that does not rock.
+    """Return the demands as one text; empty for a structure that does not rock."""
+    return " ".join(contact_parts(found, mechanism))
+
+
+def contact_parts(found: ContactDemand, mechanism: Mechanism) -> list[str]:
+    """Return the demands as sentences: those that a terminal always shows as one text, then the others.
 
     If the joints are checked, the outcome states whether a joint opens or slides so far that the result ends.
     """
     if isnan(found.friction_needed):
-        return ""
+        return []
     beyond = "" if found.followed else NOT_VALID_BEYOND
-    sentences = [_friction(found, beyond)]
+    sentences = _friction(found, beyond)
     if found.impact_friction > max(found.friction_needed, found.friction or 0.0):
         sentences.append(
             f"Impacts require a coefficient of friction of {number(found.impact_friction, 3)}, and much more with a "
@@ -457,8 +468,9 @@ def contact_words(found: ContactDemand, mechanism: Mechanism) -> str:
             "friction required is a least-squares estimate, and the normal force is the sum over the whole structure."
         )
     elif sums is not None:
-        sentences.append(f"Forces are sums over all {sums}.")
-    return " ".join(sentences)
+        sentences.append(Aside(f"Forces are sums over all {sums}."))
+    always = " ".join(each for each in sentences if not isinstance(each, Aside))
+    return [always, *(each for each in sentences if isinstance(each, Aside))]
 
 
 def _at_impacts(found: ContactDemand, mechanism: Mechanism) -> str:
@@ -473,25 +485,25 @@ def _at_impacts(found: ContactDemand, mechanism: Mechanism) -> str:
     return ": the check of the joints counts how far they slide at impacts"
 
 
-def _friction(found: ContactDemand, beyond: str) -> str:
+def _friction(found: ContactDemand, beyond: str) -> list[str]:
     needed, at = number(found.friction_needed, 3), f"at {number(found.time, 4)} s"
     where = _where(found.joint) if found.joint else "the structure"
     if found.friction is None:
-        lasts = f"it requires more than {100 * NEAR_PEAK:.0f} % of this value for {number(found.duration, 2)} s"
         usual = f"{'more' if found.beyond_masonry else 'no more'} than the {MASONRY_FRICTION:g} usual for masonry"
-        return (
-            f"Contact: {where} requires a coefficient of friction of up to {needed}, {at}, {usual}; around this time "
-            f"{lasts}."
-        )
+        lasts = f"more than {100 * NEAR_PEAK:.0f} % of this value for {number(found.duration, 2)} s."
+        return [
+            f"Contact: {where} requires a coefficient of friction of up to {needed}, {at}, {usual}.",
+            Aside(f"Around this time it requires {lasts}"),
+        ]
     there = number(found.friction, 3)
     if isnan(found.slides):
-        return f"Contact: {where} requires a coefficient of friction of up to {needed}, {at}; {there} is available."
+        return [f"Contact: {where} requires a coefficient of friction of up to {needed}, {at}; {there} is available."]
     there_first = f" at {_where(found.slides_joint)}" if found.slides_joint else ""
-    return (
+    return [
         f"Sliding would start{there_first} at {number(found.slides, 4)} s{beyond}. It would last at most "
         f"{number(found.duration, 2)} s at a time. {where[0].upper()}{where[1:]} requires a coefficient of friction "
         f"of up to {needed}, {at}; {there} is available."
-    )
+    ]
 
 
 def _support(found: SupportDemand, mechanism: Mechanism) -> str:

@@ -66,7 +66,7 @@ def test_errors_fit(arguments, monkeypatch):
 
 
 def test_a_pipe_gets_lines_as_they_are_and_so_do_programs(monkeypatch):
-    said = run("equiv", FRAME).stdout
+    said = run("equiv", FRAME, "--all").stdout
     assert any("frequency parameter: small for large structures" in line for line in said.splitlines())
     assert max(map(len, said.splitlines())) > 100
     whole = [run(*words).stdout for words in (("equiv", FRAME, "-o", "-"), ("new", "wall"), ("equiv", FRAME, "--json"))]

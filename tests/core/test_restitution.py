@@ -27,7 +27,8 @@ from rocking_cli.core.structure_file import load_structure, parse_structure
 from rocking_cli.errors import InputError
 from rocking_cli.structure import Structure
 from rocking_cli.views.cautions import cautions_of
-from rocking_cli.views.restitution import restitution_used
+from rocking_cli.views.restitution import restitution_sentences, restitution_used
+from rocking_cli.views.view import Aside
 from tests.cli.test_cli import run, run_json
 from tests.reference_mechanics import cross, link_rates, polygon_moments, sector_moments
 
@@ -350,7 +351,9 @@ def test_commands_say_which_restitution_they_used(given, tmp_path):
     file, pulse = tmp_path / "b.yaml", ("--pulse", "sine:0.4g:0.5s")
     file.write_text(f"mechanism: block\nwidth: 0.7\nheight: 2.8\n{given}", encoding="utf-8")
     said = restitution_used(Structure(load_structure(file)))
-    assert said in run("respond", file, *pulse).stdout.splitlines()
+    first, *more = restitution_sentences(Structure(load_structure(file)))
+    assert {first, *more} <= {*run("respond", file, *pulse, "--all").stdout.splitlines()}
+    assert {first, *more} & {*run("respond", file, *pulse).stdout.splitlines()} == {first}
     assert said in run("pulse", file, "--ag", "0.4g", "--period", "0.5").stdout.splitlines()
     for data in (
         run_json("respond", file, *pulse, "--neighbours", 0),
@@ -365,7 +368,9 @@ def test_commands_say_which_restitution_they_used(given, tmp_path):
 @pytest.mark.parametrize(("height", "slender"), [(0.699, None), (1.0, False), (4.8, False), (5.0, True), (9.0, True)])
 def test_tests_are_cited_on_both_sides_of_the_kinematics(height, slender):
     """eta = 1 - 1.5 sin^2(alpha) is .97 at height/width = 7; below 0.707 there is none, and nothing is compared."""
-    said = restitution_used(Structure(Block(width=1.0 if height < 2 else 0.7, height=height)))
+    structure = Structure(Block(width=1.0 if height < 2 else 0.7, height=height))
+    said, cited = restitution_used(structure), [*restitution_sentences(structure)][1:]
+    assert [isinstance(each, Aside) for each in cited] == [not slender] * (slender is not None)
     assert ("higher values for concrete and stone" in said) == (slender is not None)
     assert ("lower ones for soft or worn feet" in said) == (slender is not None)
     assert ("as slender as this, about 0.95" in said) == bool(slender)

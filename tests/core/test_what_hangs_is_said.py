@@ -121,7 +121,7 @@ def test_python_says_why_there_is_no_block_and_takes_tuples_and_arrays():
     tendon = {"name": "tendon", "path": ({"ground": (0.0, 0.0)}, {"at": np.zeros(2)}), "stiffness": 1e8}
     tied = rk.Block(**FACADE, ties=(tendon,))
     with pytest.raises(
-        AttributeError, match="the structure has no equivalent single block: its restoring moment does not vanish"
+        AttributeError, match="The structure has no equivalent single block: its restoring moment does not vanish"
     ):
         _ = rk.equiv(tied).positive
     answer = rk.respond(tied, "sine:0.4g:1s", release="0.01rad")

@@ -255,7 +255,9 @@ def test_answers_say_their_engine():
     assert list(answer) == ["nonlinear", "blocks"] and answer["blocks"].by_blocks
     assert answer.to_dict()["responses"]["blocks"]["engine"] == "blocks"
     said = " ".join(str(part) for part in answer.view.parts)
-    assert "Overturning is collapse: a block falls by 0.15" in said and "Friction is 0.6, as usual" in said
+    assert (
+        "Overturning of free blocks is collapse: a block falls by 0.15" in said and "friction is 0.6, as usual" in said
+    )
     margin = rk.margin(rk.Block(width=0.7, height=2.8), HALF_SINE, engine="auto", polarity="1")
     assert margin.to_dict()["engine"] == "auto" and margin.to_dict()["motions"][0]["by_blocks"] == 0
     assert margin["half sine"].around.count == 20

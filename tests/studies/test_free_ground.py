@@ -228,7 +228,7 @@ def test_the_bound_on_the_time_after_a_motion_is_named(monkeypatch):
     assert ends in told["engines"]["verdict"] and "rocks" not in told["engines"]["verdict"]
     end = answer.conclusion.blocks
     assert (end.concluded, end.time) == ("still_moves", run.end_time) and run.peak_ratio == end.peak_ratio
-    assert f"as free blocks it still moves at {run.end_time:.4g} s" in answer.view.parts[0].title
+    assert f"As free blocks, it still moves at {run.end_time:.4g} s" in answer.view.parts[0]
     assert told["responses"]["blocks"]["blocks"]["residual"] is None
     assert "at rest" not in " ".join(sentence for sentence in answer.sentences)
 

@@ -258,14 +258,14 @@ class TestWithoutShaking:
         assert neighbours(conditions(FRAME, dull, release=0.99 * sign), None).overturned == 0
 
 
-NEAR = "(standard deviations 4 % of amplitude, 10 % of slenderness, 0.05 of restitution),"
+NEAR = " (standard deviations 4 % of amplitude, 10 % of slenderness, 0.05 of restitution)."
 OPEN = (0.1, np.inf, np.inf)
 
 
 class TestWords:
     def test_where_nothing_can_lift_it(self):
         found = neighbours(conditions(BLOCK), parse_pulse("sine:0.1g:1s").sampled())
-        assert neighbours_in_words(found) == f"None of 200 neighbouring motions {NEAR[:-1]} uplifts the structure."
+        assert neighbours_in_words(found) == f"None of 200 neighbouring motions uplifts the structure{NEAR}"
 
     def sentence(self, overturned, peaks, unknown=0.0):
         around = Neighbourhood(restitution=0.05, slenderness=0.10)
@@ -294,11 +294,16 @@ class TestWords:
             (0.0, 0.25, OPEN, "none is known to overturn the structure, and the outcome under 50 (25 %) is unknown"),
             (0.0, 1.0, OPEN, "none is known to overturn the structure, and the outcome under all is unknown"),
             (0.4, None, OPEN, "80 (40 %) overturn the structure; 16 %"),
+            (0.1, 0.0, (0.3, 0.6, 1.0), "; 84 % stay below 1 phi_cr."),
+            (0.1, 0.0, (0.3, 0.6, 1.1), "; 16 % pass the critical rotation (1.1 phi_cr) or overturn."),
+            (0.1, 0.1, (0.3, 0.6, 1.1), "; 16 % pass the critical rotation (1.1 phi_cr) or overturn or are unknown."),
+            (0.7, 0.0, (1.2, np.inf, np.inf), "; 84 % pass the critical rotation (1.2 phi_cr) or overturn."),
         ],
     )
     def test_shares_and_peaks(self, overturned, unknown, peaks, said):
         words = self.sentence(overturned, peaks, unknown)
-        assert words.startswith(f"Of 200 neighbouring motions {NEAR} ") and said in words
+        assert words.startswith("Of 200 neighbouring motions, ") and words.endswith(NEAR)
+        assert (f"{said[:-1]}{NEAR}" if said.endswith(".") else said) in words
         assert "unknown" in said or "unknown" not in words
 
 

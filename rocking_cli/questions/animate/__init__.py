@@ -1,3 +1,3 @@
-"""Animate structures under a ground motion (GIF, MP4 or HTML)."""
+"""Animate structures under a ground motion."""
 
-PLACE = 140
+PLACE = 320

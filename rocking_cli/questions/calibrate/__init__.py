@@ -1,3 +1,3 @@
 """Find the restitution from a trace of free rocking."""
 
-PLACE = 130
+PLACE = 170

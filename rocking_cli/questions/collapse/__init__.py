@@ -1,3 +1,3 @@
 """Find the weakest mechanism of an assembly of blocks."""
 
-PLACE = 30
+PLACE = 150

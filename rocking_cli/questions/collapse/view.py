@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import inf, isclose
 from operator import itemgetter
 from typing import Any
@@ -12,7 +13,7 @@ from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.names import digits_apart
 from rocking_cli.text import in_short
 from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, rounded, table_of
-from rocking_cli.views.view import Table, View, force_unit, heading, number
+from rocking_cli.views.view import Aside, Table, View, force_unit, heading, number
 
 MAX_NAMED_BLOCKS = 6  # blocks of a part that are named; of a larger part, only SAMPLE_OF_BLOCKS
 SAMPLE_OF_BLOCKS = 3
@@ -26,7 +27,8 @@ MAX_JOINT_ROWS = 24  # number of joints up to which all are listed; with more, o
 
 def view(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism]) -> View:
     """Show lambda, hinges, groups, thrust and friction of each direction."""
-    parts: list[Table | str] = [heading(mechanism)]
+    starts = [f"lambda = {number(each.lambda_)} g in the {where.label} direction" for where, each in found.items()]
+    parts: list[Table | str] = [f"{heading(mechanism)}. {'; '.join(starts)}."]
     for direction, each in found.items():
         parts += [_hinges(direction, each), *_sentences(mechanism, each)]
         parts += _thrust(direction, each, *force_unit(mechanism))
@@ -37,9 +39,11 @@ def view(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism]) -> 
         "acceleration at which this mechanism starts (kinematic theorem)."
     )
     parts.append(
-        "The forces shown are one equilibrium state with the least friction; where parts remain at rest, or bear on "
-        "more joints than hold them, other states exist."
-        + (theorems if all(each.associated is None for each in found.values()) else "")
+        Aside(
+            "The forces shown are one equilibrium state with the least friction; where parts remain at rest, or bear "
+            "on more joints than hold them, other states exist."
+            + (theorems if all(each.associated is None for each in found.values()) else "")
+        )
     )
     return View(
         lambda: {
@@ -51,7 +55,7 @@ def view(mechanism: Mechanism, found: Mapping[Direction, CollapseMechanism]) -> 
 
 
 def _hinges(direction: Direction, found: CollapseMechanism) -> Table | str:
-    title = f"{direction.label.capitalize()} direction: lambda = {number(found.lambda_)} g"
+    title = f"{direction.label.capitalize()} direction"
     if not found.hinges:
         return f"{title}, without hinges."
     return table_of(
@@ -79,7 +83,7 @@ def _sentences(mechanism: Mechanism, found: CollapseMechanism) -> list[str]:
             f"{in_short(found.idle)} may move along at no cost: the one with the fewest moving blocks is shown."
         )
     if found.lead:
-        sentences.append(f"phi is the rotation of {found.lead}.")
+        sentences.append(Aside(f"phi is the rotation of {found.lead}."))
     if found.lifted:
         sentences.append(f"Joints that open over their whole length, or slip off: {in_short(found.lifted)}.")
     if found.slides:
@@ -103,9 +107,12 @@ def _sentences(mechanism: Mechanism, found: CollapseMechanism) -> list[str]:
             "compression. Give `friction`: 0 for a joint that carries no shear."
         )
     if found.with_usual is not None:
+        same = isclose(found.with_usual, found.lambda_, rel_tol=FRICTION_TOLERANCE)
         sentences.append(
-            f"With a coefficient of friction of {MASONRY_FRICTION:g} in joints that are given none, lambda is "
-            f"{number(found.with_usual)} g."
+            (Aside if same else str)(
+                f"With a coefficient of friction of {MASONRY_FRICTION:g} in joints that are given none, lambda is "
+                f"{number(found.with_usual)} g."
+            )
         )
     if found.valid_to is not None and found.held_by is not None:
         sentences.append(
@@ -136,11 +143,12 @@ def _thrust(direction: Direction, found: CollapseMechanism, per: float, unit: st
     if len(shown) > MAX_JOINT_ROWS:
         moving = {*(each.joint for each in found.hinges), *found.slides}
         shown = [each for each in shown if each[0] in moving][:MAX_JOINT_ROWS]
-        rest = f"{len(found.thrust)} joints bear; the JSON output has the forces in all of them."
+        rest = Aside(f"{len(found.thrust)} joints bear; the JSON output has the forces in all of them.")
     if not shown:
         return [rest] if rest else []
     title = f"Joint forces at the onset of the mechanism, {direction.label}"
-    return [table_of(title, _of_joint(per, unit), shown), *([rest] if rest else [])]
+    forces = table_of(title, _of_joint(per, unit), shown)
+    return [replace(forces, asides=range(len(shown))), *([rest] if rest else [])]
 
 
 def table(found: Mapping[Direction, CollapseMechanism]) -> dict[str, list[Any]]:

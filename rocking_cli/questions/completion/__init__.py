@@ -1,3 +1,3 @@
 """Print the shell completion script."""
 
-PLACE = 270
+PLACE = 540

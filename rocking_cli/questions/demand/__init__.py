@@ -1,3 +1,3 @@
 """Show the response spectra of a site by a code."""
 
-PLACE = 85
+PLACE = 230

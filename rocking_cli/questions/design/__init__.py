@@ -1,3 +1,3 @@
 """Find the values of a field that meet a requirement."""
 
-PLACE = 110
+PLACE = 440

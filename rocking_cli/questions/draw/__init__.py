@@ -1,3 +1,3 @@
 """Draw a structure at rest and displaced, with dimensions."""
 
-PLACE = 10
+PLACE = 130

@@ -1,3 +1,3 @@
 """Compute the equivalent rocking block of each structure."""
 
-PLACE = 20
+PLACE = 140

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import degrees, isclose, nan
 from operator import itemgetter, methodcaller
 from typing import Any, NamedTuple
@@ -18,7 +18,13 @@ from rocking_cli.views.cautions import before_rocking, bound_data, cautions_of, 
 from rocking_cli.views.column import UNIT, Column, data_of, of, only_shown, table_across
 from rocking_cli.views.restitution import restitution_used
 from rocking_cli.views.verdict import uplift_in_words
-from rocking_cli.views.view import View, heading, number
+from rocking_cli.views.view import ASIDE, Aside, View, heading, number
+
+KAPPAS = (
+    "The rotation phi of the structure is kappa times the rotation theta of its equivalent block; both kappas preserve "
+    "the critical rotation. How closely the block follows the structure depends on the amplitude: compare free periods "
+    "and overturning times with `rocking error`, and time histories with `rocking respond`."
+)
 
 
 @dataclass(frozen=True)
@@ -87,7 +93,6 @@ PARAMETERS = (
 def view(structure: Structure) -> View:
     """Show the parameters of both directions, in one column if they agree, and which kappa to prefer."""
     mechanism, sides = structure.mechanism, sides_of(structure)
-    early = before_rocking(mechanism)
     data = {
         "mechanism": mechanism.mechanism,
         "name": mechanism.name,
@@ -108,24 +113,20 @@ def view(structure: Structure) -> View:
     columns = _columns(mechanism, [side.direction for side in shown])
     heads = ["value"] if len(shown) == 1 else [side.direction.label for side in shown]
     rows = [side.parameters | _extras(mechanism, side.direction) for side in shown]
-    table = table_across(heading(mechanism), columns, heads, rows, {**UNIT, "meaning": of("words")})
-    where = [""] if len(shown) == 1 else [f"{side.direction.label}: " for side in shown]
-    sentences = [f"Caution: {text}" for text in early]
-    sentences += [f"{prefix}{sentence(side)}" for prefix, side in zip(where, shown, strict=True)]
-    if structure.why_no_block is None:
-        sentences.append(
-            "The rotation phi of the structure is kappa times the rotation theta of its equivalent block; both "
-            "kappas preserve the critical rotation. How closely the block follows the structure depends on the "
-            "amplitude: compare free periods and overturning times with `rocking error`, and time histories with "
-            "`rocking respond`."
-        )
+    table = table_across("", columns, heads, rows, {**UNIT, "meaning": of("words")})
+    table = replace(table, ranks=[*table.ranks[:-1], ASIDE])
+    labels = [f"{side.direction.label} direction" for side in shown]
+    where = [f"{heading(mechanism)}, {labels[0]}", labels[-1].capitalize()] if shown[1:] else [heading(mechanism)]
+    first = [f"{place}. {sentence(side)}" for place, side in zip(where, shown, strict=True)]
+    first += [f"Caution: {text}" for text in before_rocking(mechanism)]
+    sentences = [] if structure.why_no_block else [Aside(KAPPAS)]
     sentences += [f"Caution: {structure.misleading}."] if structure.misleading else []
     sentences += [*hung_in_words(mechanism), *([] if mechanism.rocks_both_ways else [restitution_used(structure)])]
     sentences += [f"P{mechanism.crushing.words[1:]}."] if mechanism.crushing else []
     sentences += [
         f"Caution: {text}" for text in (*of_restitution(mechanism), *of_bounds(mechanism), *mechanism.cautions())
     ]
-    return View(data, [table, *sentences])
+    return View(data, [*first, table, *sentences])
 
 
 def _columns(mechanism: Mechanism, directions: Sequence[Direction]) -> Iterator[Column[Mapping[str, float]]]:
@@ -133,7 +134,8 @@ def _columns(mechanism: Mechanism, directions: Sequence[Direction]) -> Iterator[
     per_mass = "" if mechanism.has_mass else ", per unit mass"
     for each in PARAMETERS:
         words = each.words + (per_mass if each.unit.startswith("kg ") else "")
-        yield only_shown(each.key, itemgetter(each.key), number, each.unit_of(mass=mechanism.has_mass), words=words)
+        how = {"words": words, "rank": ASIDE * each.key.endswith("_eq")}
+        yield only_shown(each.key, itemgetter(each.key), number, each.unit_of(mass=mechanism.has_mass), **how)
     parameters = {direction: {each.key: each for each in mechanism.found(direction)} for direction in directions}
     for key in dict.fromkeys(key for those in parameters.values() for key in those):
         meanings = {direction: those[key].meaning for direction, those in parameters.items() if key in those}
@@ -206,19 +208,20 @@ def kappa_in_words(block: EquivalentBlock) -> str:
     """Return a sentence on which kappa to prefer for a block, by its uplift acceleration alone."""
     ratio = block.lambda_lin / block.lambda_
     if preferred_kappa(block) == "either":
-        text = "effectively slender, either kappa is adequate"
+        text = "Effectively slender, either kappa is adequate"
     else:
-        text = "disregard kappa1" if grade(ratio - 1) is Grade.DISREGARD else "by the uplift prefer kappa2"
+        text = "Disregard kappa1" if grade(ratio - 1) is Grade.DISREGARD else "By the uplift prefer kappa2"
     return (
-        f"lambda_lin/lambda = {ratio:.4g}: {text}; with kappa1 the uplift acceleration is "
-        f"{uplift_in_words(ratio - 1)}, with kappa2 it is kept."
+        f"{text}: with kappa1 the uplift acceleration is {uplift_in_words(ratio - 1)} (lambda_lin/lambda = "
+        f"{ratio:.4g}), with kappa2 it is kept."
     )
 
 
 def sentence(side: EquivalentSide) -> str:
-    """Return a sentence on which kappa to prefer in a direction; without a block, on why there is none."""
-    if side.block is not None:
-        return f"critical rotation {degrees(side.block.phi_cr):.4g} deg. {kappa_in_words(side.block)}"
+    """Return what the block of a direction means, and which kappa to prefer; without a block, why there is none."""
+    if (block := side.block) is not None:
+        known = f"Uplift at {block.lambda_:.4g} g, critical rotation {degrees(block.phi_cr):.4g} deg"
+        return f"{known}, p = {block.p:.4g} rad/s. {kappa_in_words(block)}"
     statics = side.statics
     grows = "increases" if statics.stiffening > 0 else "decreases"
     ends = (
@@ -229,7 +232,7 @@ def sentence(side: EquivalentSide) -> str:
         else f"the moment first vanishes at {statics.phi_cr:.4g} rad"
     )
     return (
-        f"the structure has no equivalent single block: {statics.why_no_block}. It uplifts at {statics.lambda_:.4g} "
+        f"The structure has no equivalent single block: {statics.why_no_block}. It uplifts at {statics.lambda_:.4g} "
         f"g; its restoring moment then {grows} by {abs(statics.stiffening):.4g} times its initial value per rad; "
         f"{ends}. Nonlinear time histories are available; linear models, closed forms and maps in terms of p are not."
     )

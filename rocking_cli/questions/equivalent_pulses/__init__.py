@@ -1,3 +1,3 @@
 """Find the equivalent pulses of several structures."""
 
-PLACE = 180
+PLACE = 360

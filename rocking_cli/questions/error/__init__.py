@@ -1,3 +1,3 @@
 """Compute the errors of the equivalent block."""
 
-PLACE = 40
+PLACE = 370

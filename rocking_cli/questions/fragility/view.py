@@ -334,7 +334,7 @@ def _notes(tallies: Mapping[str, Tally], engine: EngineName) -> Iterator[str]:
     if runs:
         friction = f"that of the structure's file, or {MASONRY_FRICTION:g}, as usual for masonry, if it gives none"
         off_edge = sum(tally.off_edge for tally in tallies.values())
-        yield blocks_in_words(engine, " and ".join(runs), friction, off_edge)
+        yield from blocks_in_words(engine, " and ".join(runs), friction, off_edge)
     elif engine == "auto":
         yield ALL_EXACT
 

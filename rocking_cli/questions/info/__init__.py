@@ -1,3 +1,3 @@
 """Show the installation: versions, plugins, kernels."""
 
-PLACE = 250
+PLACE = 520

@@ -1,4 +1,4 @@
 """Compute how close ground motions are to overturning."""
 
-PLACE = 80
+PLACE = 410
 MORE = {"verb": ["shares"]}

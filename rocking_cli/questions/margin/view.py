@@ -21,7 +21,7 @@ from rocking_cli.views.engines import BLOCKS_FAILED, engines_in_words
 from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.restitution import heading_of_run, restitution_data, restitution_used
 from rocking_cli.views.verdict import unchecked
-from rocking_cli.views.view import MAX_DETAILED_MOTIONS, Table, View, number
+from rocking_cli.views.view import MAX_DETAILED_MOTIONS, Aside, Table, View, number
 
 GOVERNING_ROW = "overturn or unknown"
 
@@ -85,11 +85,15 @@ def view(conditions: Conditions, rows: Sequence[MarginRow], end: Conclusion) -> 
         "-1": "motions reversed",
         "both": "motions as given and reversed (the worse of the two counts)",
     }[conditions.polarity]
+    low, high = rows[0].margin.factors[[0, -1]]
     parts: list[Table | str] = [
         f"{heading_of_run(structure)}. {of_margin(end, over)}",
-        f"Scale factors on {either}; at each, {around.count} neighbouring motions, {deviations(around)}. 'First at' is "
-        "the smallest factor at which so many of them overturn the structure; 'always from' the smallest from which on "
-        "no factor tried (up to 5) has fewer.",
+        f"Scale factors from {low:.2g} to {high:.2g} on {either}; at each, {around.count} neighbouring motions, "
+        f"{deviations(around)}.",
+        Aside(
+            "'First at' is the smallest factor at which so many of them overturn the structure; 'always from' the "
+            "smallest from which on no factor tried has fewer."
+        ),
         table_of("", COLUMNS, _lines(rows)),
     ]
     if any(row.margin.unknown.any() for row in rows):
@@ -99,7 +103,9 @@ def view(conditions: Conditions, rows: Sequence[MarginRow], end: Conclusion) -> 
     by_blocks, off_edge = (sum(getattr(row.margin, key) for row in rows) for key in ("by_blocks", "off_edge"))
     parts += [restitution_used(structure)] if structure.restitution is not None else []
     parts += engines_in_words(conditions.engine, by_blocks, mechanism, off_edge)
-    parts += [f"{row.name}: {in_words(row.margin)}" for row in rows] if len(rows) <= MAX_DETAILED_MOTIONS else []
+    for row in rows if len(rows) <= MAX_DETAILED_MOTIONS else []:
+        reached, *others = sentences(row.margin)
+        parts += [Aside(f"{row.name}: {reached}"), *[f"{row.name}: {' '.join(others)}"] * bool(others)]
     parts += [f"Caution: {text}" for text in cautions_of(mechanism)]
     if not all(row.margin.checked for row in rows):
         parts.append(unchecked(why=mechanism.unchecked))
@@ -154,46 +160,51 @@ def margin_data(found: Margin) -> dict[str, Any]:
 
 
 def in_words(found: Margin) -> str:
-    """Describe a margin in a few sentences, of which the first one governs: unknown outcomes count as overturning.
+    """Describe a margin, with at least one factor, in a few sentences, as one text."""
+    return " ".join(sentences(found))
 
-    Parameters
-    ----------
-    found : Margin
-        The margin, with at least one factor.
+
+def sentences(found: Margin) -> list[str]:
+    """Return a few sentences on a margin; the first one, which has the factors of the table, governs.
+
+    In it, unknown outcomes count as overturning.
     """
     doubt = bool(found.unknown.any())
     at = partial(_at, found.pga_g)
     does = "overturn the structure, or have an unknown outcome," if doubt else "overturn the structure"
-    sentence = _reached(found, found.at_most, does)
+    reached = _reached(found, found.at_most, does)
     if not doubt:
-        return sentence
+        return reached
     first = float(found.factors[(found.unknown > 0).argmax()])
     why = "the model no longer holds (see `rocking respond`)" if found.engine == "exact" else BLOCKS_FAILED
-    sentence += (
-        f" From a factor of {at(first)} on, some outcomes are unknown, as {why}: there, the structure may overturn."
+    reached.append(
+        f"From a factor of {at(first)} on, some outcomes are unknown, as {why}: there, the structure may overturn."
     )
     known = [
         f"{percent(level)} from {at(least)}" for level in SHARE_LEVELS if (least := found.first(level)) is not None
     ]
     if known:
-        return f"{sentence} Shares known to overturn it: {', '.join(known)}."
+        return [*reached, f"Shares known to overturn it: {', '.join(known)}."]
     few = f"At no factor tried are {percent(SHARE_LEVELS[0])} or more known to overturn it"
-    return f"{sentence} {few}; this does not prove that it stands."
+    return [*reached, f"{few}; this does not prove that it stands."]
 
 
-def _reached(found: Margin, shares: NDArray[np.float64], does: str) -> str:
-    """Return in words at which factors the shares of neighbours that do something first reach each level."""
+def _reached(found: Margin, shares: NDArray[np.float64], does: str) -> list[str]:
+    """Return in words at which factors the shares of neighbours that do something first reach each level.
+
+    A second sentence states that fewer do under a stronger motion, if this is so.
+    """
     at = partial(_at, found.pga_g)
     low, high = found.factors[[0, -1]]
     reached = [
         (level, float(found.factors[(shares >= level).argmax()])) for level in SHARE_LEVELS if (shares >= level).any()
     ]
     if not reached:
-        return (
+        return [
             f"At no scale factor from {low:.2g} to {high:.2g} (PGA from {low * found.pga_g:.3g} g to "
             f"{high * found.pga_g:.3g} g) do {percent(SHARE_LEVELS[0])} or more of the neighbouring motions "
             f"{does.removesuffix(',')}."
-        )
+        ]
     (level, first), *others = reached
     parts = [f"{percent(level)} of the neighbouring motions first {does} at a factor of {at(first, 'PGA ')}"]
     parts += [f"{percent(level)} at {at(first)}" for level, first in others]
@@ -203,15 +214,15 @@ def _reached(found: Margin, shares: NDArray[np.float64], does: str) -> str:
         sentence += (
             f"; the factors tried are {percent(float(np.median(found.factors[1:] / found.factors[:-1])) - 1)} apart"
         )
+    levels = [f"{sentence}."]
     for level, first in reached:
         above = found.factors > first
         least = float(shares[above].min(initial=1.0))
         if least < level:
             factor = float(found.factors[above][shares[above].argmin()])
             again = f"only {percent(least)} do" if least else "none does"
-            sentence += f". A stronger motion is not always worse: at a factor of {at(factor)} {again}"
-            break
-    return f"{sentence}."
+            return [*levels, f"A stronger motion is not always worse: at a factor of {at(factor)} {again}."]
+    return levels
 
 
 def _at(pga: float, factor: float, what: str = "") -> str:

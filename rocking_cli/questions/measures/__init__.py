@@ -1,3 +1,3 @@
 """List the installed intensity measures."""
 
-PLACE = 230
+PLACE = 240

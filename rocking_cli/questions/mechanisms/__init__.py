@@ -1,3 +1,3 @@
 """List, describe or check the installed mechanisms."""
 
-PLACE = 220
+PLACE = 160

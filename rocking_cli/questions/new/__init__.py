@@ -1,3 +1,3 @@
 """Print a template file, or create a plugin package."""
 
-PLACE = 240
+PLACE = 110

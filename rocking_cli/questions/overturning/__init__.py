@@ -1,4 +1,4 @@
 """Map the pulses that overturn a structure."""
 
-PLACE = 160
+PLACE = 340
 MORE = {"verb": ["overturning_curves", "overturning_map"]}

@@ -1,3 +1,3 @@
 """Compute the response to a pulse."""
 
-PLACE = 150
+PLACE = 330

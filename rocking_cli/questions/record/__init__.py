@@ -1,4 +1,4 @@
 """Inspect records: contents, strength and possible defects."""
 
-PLACE = 50
+PLACE = 210
 MORE = {"verb": ["response_spectrum"]}

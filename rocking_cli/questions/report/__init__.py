@@ -1,3 +1,3 @@
 """Write a report on a structure, as HTML, PDF or .docx."""
 
-PLACE = 210
+PLACE = 450

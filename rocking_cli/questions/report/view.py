@@ -191,10 +191,7 @@ def _english(content: Assessment) -> dict[str, Any]:
     if content.results:
         texts["counted"] = counted([each.conclusion for each in content.results], _over(content))
         texts["deviations"] = deviations(content.results[0].margin.around)
-    advice = [
-        kappa_in_words(side.block) if side.block is not None else _capital(sentence(side))
-        for side in sides_of(structure)
-    ]
+    advice = [kappa_in_words(side.block) if side.block is not None else sentence(side) for side in sides_of(structure)]
     sizes = [each if each.endswith("?") else f"{each}." for each in doubts_about_size(mechanism)]
     return {
         **{key: printed(text) for key, text in texts.items()},

@@ -10,6 +10,7 @@ from rocking_cli import names
 from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
+from rocking_cli.dynamics.verdict import disagree
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.tables import Columns
 from rocking_cli.names import digits_apart, peaks_over
@@ -24,10 +25,10 @@ from rocking_cli.views.column import Column, frame_of, of, only_shown, rounded, 
 from rocking_cli.views.conclusion import MAX_NAMED_MOTIONS, counted
 from rocking_cli.views.engines import engines_in_words
 from rocking_cli.views.neighbours import deviations, neighbour_columns
-from rocking_cli.views.response import apart, model_heads, models_used
-from rocking_cli.views.restitution import heading_of_run, restitution_used
-from rocking_cli.views.verdict import GO_ON, contact_words, unchecked, unknown_after
-from rocking_cli.views.view import ABSENT, Table, number
+from rocking_cli.views.response import LINEAR, apart, model_heads, models_used
+from rocking_cli.views.restitution import heading_of_run, restitution_sentences
+from rocking_cli.views.verdict import GO_ON, contact_parts, unchecked, unknown_after
+from rocking_cli.views.view import ABSENT, ASIDE, Aside, Table, number
 
 
 class MotionRow(NamedTuple):
@@ -52,14 +53,18 @@ class Several:
         The structure and the conditions of the runs.
     asked : int
         Number of motions that were given, with those that could not be used.
+    linear : bool
+        Whether equivalent blocks are shown on terminals without --all too, as they are if the outcomes of models
+        disagree.
     """
 
-    def __init__(self, conditions: Conditions, asked: int) -> None:
+    def __init__(self, conditions: Conditions, asked: int, *, linear: bool) -> None:
         structure, models, engine = conditions.structure, conditions.models, conditions.engine
         self._title = heading_of_run(structure)
         rocks = structure.no_model is None
         self._free = [side.phi_cr is None for side in structure.statics] if rocks else [False]
-        self._restitution = restitution_used(structure) if rocks else ""
+        self._restitution = [*restitution_sentences(structure)] if rocks else []
+        self._linear = linear
         with_blocks: Sequence[ModelName] = ["nonlinear", "blocks"] if rocks else ["blocks"]
         self._engine, self._by_blocks = engine, 0
         self._models = models if engine == "exact" else with_blocks
@@ -86,6 +91,7 @@ class Several:
             name = f"{found.given.motion.name}{reversed_}"
             self._row(name, pga, histories, neighbours)
             run = histories[best_model(histories)]
+            self._linear |= disagree(histories)
             self._by_blocks += "blocks" in histories
             self._doubtful |= neighbours is not None and bool(neighbours.unknown)
             if run.unknown:
@@ -112,7 +118,7 @@ class Several:
         yield only_shown(f"peak phi/{'limit' if any(self._free) else 'phi_cr'}\nunder", of("name"), text=True)
         yield only_shown("PGA\n[g]", of("pga"), rank=2)
         for model, head in zip(self._models, model_heads(self._models, unknown=bool(self._until)), strict=True):
-            yield only_shown(head, partial(_fate_of, model))
+            yield only_shown(head, partial(_fate_of, model), rank=ASIDE * (model in LINEAR and not self._linear))
         if "nonlinear" in self._models or self._engine == "exact":  # free blocks do not move as the mechanism does
             yield from self._peaks()
         if self._around is not None:
@@ -147,7 +153,7 @@ class Several:
             yield f"Neighbours: {self._around.count} neighbouring motions for each motion, {deviations(self._around)}."
         yield from self._joints()
         yield from models_used(self._models)
-        yield from [self._restitution] * bool(self._restitution)
+        yield from self._restitution
         yield from engines_in_words(self._engine, self._by_blocks, self._mechanism)
         yield from (f"Caution: {text}" for text in self._cautions)
         yield from (
@@ -159,7 +165,7 @@ class Several:
     def _joints(self) -> Iterator[str]:
         """Yield until when motions are known, the friction that each requires, and the joints that fail.
 
-        If the joints hold under all motions, yield the demands of the most demanding one.
+        If the joints hold under all motions, yield the demands of the most demanding one, for --all.
         """
         for name, until in self._until.items():
             yield f"{name}: {until}"
@@ -167,14 +173,12 @@ class Several:
             yield f"Next: {GO_ON * self._witness}`rocking margin` shows up to which factor the outcomes are known."
         asks = {name: demand for name, demand in self._contacts.items() if demand.friction_needed >= 0}
         order = sorted(asks, key=lambda name: -asks[name].friction_needed)
-        if len(order) > 1:
+        if order:
             yield f"Friction that the joints require: {self._friction(asks, order)}."
         fail = {name: demand for name, demand in self._contacts.items() if not demand.stands}
-        if not fail and asks:
-            fail = {f"The joints hold under all motions, of which {order[0]} demands most of them": asks[order[0]]}
-        for name, demand in fail.items():
-            if sentence := contact_words(demand, self._mechanism):  # empty if the structure does not rock
-                yield f"{name}: {sentence.removeprefix('Contact: ')}"
+        for name, demand in (fail or {each: asks[each] for each in order[:1]}).items():
+            for words in contact_parts(demand, self._mechanism):  # none if the structure does not rock
+                yield (type(words) if fail else Aside)(f"{name}: {words.removeprefix('Contact: ')}")
 
     def _friction(self, asks: Mapping[str, ContactDemand], order: Sequence[str]) -> str:
         """Return the friction that motions require, the largest first, and the motions that require too much."""

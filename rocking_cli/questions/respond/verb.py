@@ -142,7 +142,8 @@ class _Answering:
                 f"T_p = {fit.pulse.period:.4g} s, from {fit.start:.4g} s, sign {fit.sign:+d}: "
                 f"{100 * fit.captured:.0f} % of the energy of the velocity"
             )
-        shown = view(response, conditions, title, doubts_of(structure.mechanism), impacts=asked.impacts)
+        doubts, linear = doubts_of(structure.mechanism), asked.model is not None
+        shown = view(response, conditions, title, doubts, impacts=asked.impacts, linear=linear)
         wide = history_table.of_each_block if asked.each_block else history_table.wide
         long = (lambda *given: stacked(wide(*given))) if asked.each_block else history_table.long
         under = ("pulse_alone",) * (asked.with_pulse is not None) + ("polarity",) * (len(conditions.signs) > 1)
@@ -201,7 +202,8 @@ def _of_several(run: _Answering, chosen: list[Scaled]) -> Answers[ResponseAnswer
     asked, motions = run.asked, run.asked.ground_motions
     if str(asked.out) == STANDARD_OUTPUT:
         raise InputError(Problem("- takes the table of a single motion: for several, give a file", field=named("out")))
-    table, details = Several(run.conditions, motions.count), list[Table | str]()
+    table = Several(run.conditions, motions.count, linear=asked.model is not None)
+    details = list[Table | str]()
     read = [run.conditions.structure.file, *(record.path for record in motions.records)]
     outs, plots = places_of("out", asked.out, chosen, read), places_of("plot", asked.plot, chosen, read)
 

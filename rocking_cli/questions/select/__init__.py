@@ -1,3 +1,3 @@
 """Select records whose mean spectrum matches a target."""
 
-PLACE = 60
+PLACE = 220

@@ -1,3 +1,3 @@
 """Check that this installation computes correctly."""
 
-PLACE = 260
+PLACE = 530

@@ -1,3 +1,3 @@
-"""Compute the rocking spectrum: peak rotation against size."""
+"""Compute the rocking spectrum, peak against size."""
 
-PLACE = 170
+PLACE = 350

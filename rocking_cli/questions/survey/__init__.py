@@ -1,3 +1,3 @@
-"""Rank the structures of a table, the most vulnerable first."""
+"""Rank the structures of a table by vulnerability."""
 
-PLACE = 100
+PLACE = 430

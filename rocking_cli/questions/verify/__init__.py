@@ -1,3 +1,3 @@
 """Verify a masonry mechanism by a code, such as NTC 2018."""
 
-PLACE = 90
+PLACE = 420

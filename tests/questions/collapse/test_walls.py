@@ -245,7 +245,14 @@ class TestWhatHasNoModel:
         assert "slides between floor and low" in run("collapse", file, "--plot", plot).stdout and plot.exists()
         assert "no rocking model exists for sliding" in run("equiv", file, code=2).stderr
 
+    def test_it_begins_with_lambda_in_each_direction(self):
+        """A block that leans by .4 m to the right: its centroid is .3 m and .7 m from its corners, 2 m high."""
+        ground = {"floor": {"polygon": [[-3, -1], [6, -1], [6, 0], [-3, 0]]}}
+        leaning = Assembly(blocks={"block": {"polygon": [[0, 0], [1, 0], [1.4, 4], [0.4, 4]]}}, ground=ground)
+        first, *_ = view(leaning, collapses(leaning)).parts
+        assert "lambda = 0.15 g in the positive direction; lambda = 0.35 g in the negative direction." in first
+
     def test_a_sentence_takes_the_place_of_a_table_of_no_hinges(self):
         structure = Assembly(**SLIDES)
         text = words(view(structure, collapses(structure)))
-        assert "lambda = 0.05 g, without hinges." in text and "hinge   between" not in text
+        assert "lambda = 0.05 g in" in text and "direction, without hinges." in text and "hinge   between" not in text

@@ -264,7 +264,7 @@ def test_equiv_error_and_respond_disregard_the_same_kappa1(tmp_path):
         block = equivalent_block(structure)
         off = max((block[side].lambda_lin / block[side].lambda_ - 1 for side in Direction), key=abs)
         unfit = abs(off) > 0.15
-        assert ("disregard kappa1" in run("equiv", file).stdout) == unfit
+        assert ("Disregard kappa1" in run("equiv", file).stdout) == unfit
         assert unfit <= (run_json("error", file)["grades"]["kappa1"] == "disregard")
         top = 0.7 * max(block[side].lambda_ for side in Direction)
         asked = "respond", file, "--neighbours", 0, "--pulse", f"sine:{2 * top:.4g}g:0.5s", "--model"
@@ -286,9 +286,9 @@ def test_grades_on_both_sides_of_their_bounds(error, expected):
 
 @pytest.mark.parametrize(
     ("ratio", "prefer", "words"),
-    [(0.98664, "either", "effectively slender"), (0.9865, "kappa2", "by the uplift prefer kappa2"),
-     (0.8501, "kappa2", "by the uplift prefer kappa2"), (0.8499, "kappa2", "disregard kappa1"),
-     (1.1501, "kappa2", "disregard kappa1; with kappa1 the uplift acceleration is 15 % too high")],
+    [(0.98664, "either", "Effectively slender"), (0.9865, "kappa2", "By the uplift prefer kappa2"),
+     (0.8501, "kappa2", "By the uplift prefer kappa2"), (0.8499, "kappa2", "Disregard kappa1"),
+     (1.1501, "kappa2", "Disregard kappa1: with kappa1 the uplift acceleration is 15 % too high")],
 )  # fmt: skip
 def test_advice_on_both_sides_of_its_bounds(ratio, prefer, words):
     block = replace(equivalent_block(Block(width=0.7, height=2.8)).positive, lambda_lin=0.25 * ratio)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from contextlib import nullcontext
 
 import numpy as np
@@ -18,7 +19,7 @@ from rocking_cli.plotting import style
 from rocking_cli.questions.margin import study as margins
 from rocking_cli.questions.margin.picture import draw_margins
 from rocking_cli.questions.margin.study import FACTORS, SHARE_LEVELS, Margin, margin
-from rocking_cli.questions.margin.view import in_words
+from rocking_cli.questions.margin.view import in_words, sentences
 from rocking_cli.structure import Structure, build_models
 from rocking_cli.studies.neighbours import Conditions, Neighbourhood
 from rocking_cli.studies.response import of_one_degree
@@ -180,7 +181,8 @@ class TestWords:
         ],
     )  # fmt: skip
     def test_it_says_at_which_factors_how_many_overturn(self, shares, unknown, said):
-        words = in_words(made(*shares, unknown=unknown))
+        words, first = in_words(made(*shares, unknown=unknown)), sentences(made(*shares, unknown=unknown))[0]
+        assert words.startswith(first) and not re.search("always worse|are unknown|prove", first)
         assert all(each in words for each in said)
         assert ("always worse" in words) == any("always worse" in each or "only 30 %" in each for each in said)
         assert ("unknown" in words) == (unknown is not None)
@@ -270,7 +272,8 @@ class TestCommand:
         assert f" {found.first(0.5, unknown=True):.3g} " in rows[first] and rows[first + 1].startswith(
             "known to overturn"
         )
-        assert any(row.startswith("accel.csv: At least 10 %") and "an unknown outcome" in row for row in rows)
+        assert any(row.startswith("accel.csv: ") and "outcomes are unknown, as" in row for row in rows)
+        assert not any("At least 10 %" in row for row in rows)
         (known,) = run_json(*words, "--opening", "100%")["motions"]
         wider, less = np.array(known["unknown"]), np.array(ours["unknown"])
         assert (wider <= less).all() and wider.sum() < less.sum() - 1

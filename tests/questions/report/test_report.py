@@ -153,7 +153,7 @@ class TestContent:
         said = found["answers"]["How close is that?"]
         assert "a factor of 0.2 (PGA 10 g), 50 % at 0.2 (10 g) and 90 % at 0.2 (10 g)" in said
         around = Neighbourhood(8, slenderness=0.1, restitution=0.05)  # its restitution is not given
-        assert f"Of 8 neighbouring motions ({deviations(around)}), all overturn the structure." in said
+        assert f"Of 8 neighbouring motions, all overturn the structure ({deviations(around)})." in said
         assert any("scaled by large factors" in each for each in found["doubts"])
 
     @pytest.mark.rest

@@ -87,7 +87,7 @@ def lines_of(runs, motion):
 
 
 def test_free_blocks_go_on_by_themselves_where_a_history_ends(unasked):
-    """What is known until when stays that of one degree of freedom; both are in the first sentence and the heading."""
+    """What is known until when stays that of one degree of freedom; both are in the first sentence."""
     told, (exact, blocks) = unasked.to_dict(), runs_of(unasked.engines[1]).values()
     assert exact.unknown and blocks.fell and next(iter(unasked)) == "nonlinear" and "blocks" in unasked
     assert told["responses"]["nonlinear"]["outcome"] == told["conclusion"]["concluded"] == "unknown"
@@ -98,9 +98,8 @@ def test_free_blocks_go_on_by_themselves_where_a_history_ends(unasked):
     }  # fmt: skip
     assert told["conclusion"]["next"] == ["hold_joint", "strengthen", "margin"]
     assert told["engines"]["finding"] == "exact_unknown" and told["no_blocks"] is None
-    first, heading = unasked.sentences[0], unasked.view.parts[0].title
-    for text in (first, heading):
-        assert text.index(f"unknown after {exact.known_to:.4g} s") < text.index(f"{blocks.overturning_time:.4g} s")
+    text = unasked.sentences[0]
+    assert text.index(f"unknown after {exact.known_to:.4g} s") < text.index(f"{blocks.overturning_time:.4g} s")
     asked = rk.respond(SMOOTH, STRONG, engine="auto")
     assert np.array_equal(asked["blocks"].phi, blocks.phi, equal_nan=True)  # to the last bit, and again
 
@@ -223,9 +222,7 @@ class TestParting:
         assert found.finding == "agree" and isnan(found.parted)
         assert found.peak_quotient == pytest.approx(1.0, abs=0.02)
         assert found.peak_quotient == found.of_blocks.peak_ratio / np.abs(found.exact.ratio).max()
-        assert (
-            answer.sentences[0].startswith("The structure rocks to 0.") and "As free blocks, it" in answer.sentences[0]
-        )
+        assert re.search(r"block\. The structure rocks to 0\..* As free blocks, it", answer.sentences[0])
         assert answer.sentences[1].startswith("The engines agree: the structure rocks, with a peak of 0.")
 
     @pytest.mark.parametrize("until", [0.2, 0.4])

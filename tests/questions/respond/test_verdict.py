@@ -17,7 +17,8 @@ from rocking_cli.structure import Structure
 from rocking_cli.views.response import known_data
 from rocking_cli.views.restitution import restitution_used
 from rocking_cli.views.verdict import NO_JOINTS, OVERTURNS, joints_in_words, verdict
-from tests.cli.test_cli import run
+from rocking_cli.views.view import Aside
+from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES, rows_of
 from tests.following import respond
 
@@ -81,6 +82,35 @@ def test_the_verdict_says_what_happened(histories, words, not_said):
     said = verdict(histories, agreements(histories))
     assert words in said
     assert not_said not in said
+
+
+@pytest.mark.parametrize(
+    ("amplitude", "more", "shown"),
+    [(0.3, (), False), (0.3, ("--model", "nonlinear,linear1"), True), (0.3, ("--all",), True), (0.38, (), True)],
+)
+def test_equivalent_blocks_are_shown_if_they_are_asked_for_or_overturn_alone(amplitude, more, shown):
+    """At .38 g, linear1 overturns and the block itself does not; the first line is the outcome either way."""
+    words = ("respond", EXAMPLES / "block.yaml", "--pulse", f"sine:{amplitude}g:0.8s", "--neighbours", 0)
+    text, run_of = run(*words, *more).stdout, run_json(*words)["responses"]["nonlinear"]
+    assert f". The structure rocks to {run_of['peak_ratio']:.4g} of its critical rotation" in text.splitlines()[0]
+    assert ("linear1" in text) == shown and ("Do not trust" in text) == (amplitude == 0.38)
+    assert ("Models: " in text) == ("--all" in more) and "not measured" in text
+    assert ("peak rotation / phi_cr" in text) == shown
+    assert ("overturning time" in text) == (amplitude == 0.38 or "--all" in more)
+
+
+@pytest.mark.parametrize("name", ["arch", "assembly", "wall"])
+def test_what_bears_on_an_outcome_is_shown_without_more(name):
+    """Warnings, joints that open, unknown outcomes and shares are on the terminal without --all."""
+    answer = rk.respond(EXAMPLES / f"{name}.yaml", EXAMPLES / "accel.csv", scale=1.5, engine="exact", neighbours=10)
+    aside = " ".join(part for part in answer.view.parts if isinstance(part, Aside))
+    told, kept = answer.to_dict(), " ".join(part for part in answer.sentences if not isinstance(part, Aside))
+    of = told["responses"]["nonlinear"]
+    assert aside and not re.search(r"Caution|unknown|not valid|unconservative|assume", aside)
+    assert "Of 10 neighbouring motions, " in kept and all(each in kept for each in told["notes"])
+    assert f"friction of up to {of['contact']['friction_needed']:.3g}" in kept
+    ends = "overturns" if of["overturned"] else f"rocks to {of['peak_ratio'] or 0:.4g} of its"
+    assert (f"unknown after {of['known_to']:.4g} s" if of["unknown"] else ends) in answer.sentences[0]
 
 
 @pytest.mark.parametrize(
@@ -354,7 +384,8 @@ def test_every_command_calls_an_outcome_the_same(structure, pulse, word, tmp_pat
         before = re.split("Coefficient of restitution|No closed form|Closed form", said)[0]
         for other in {"does not uplift", "rocks", "overturns"} - {word, "rocks"}:
             assert other not in before, command
-    table = next(line for line in texts["respond"].splitlines() if line.strip().startswith("outcome"))
+    everything = run("respond", block, "--pulse", pulse, "--neighbours", 0, "--engine", "exact", "--all").stdout
+    table = next(line for line in everything.splitlines() if line.strip().startswith("outcome"))
     cells = re.split(r"\s{2,}", table.strip())[1:]
     assert cells == ([word] * 3 if word != "unknown" else [word, "-", "-"])  # no outcome of a block beside it
 
