@@ -192,11 +192,8 @@ def table_across(
     ]
     ranks = [0, *(ASIDE * each for each in aside or [False] * len(rows)), *(0 for _ in after)]
     kept = [k for k in range(1, len(rows) + 1) if ranks[k] < ASIDE]
-    asides = [
-        k
-        for k, (column, line) in enumerate(zip(seen, lines, strict=True))
-        if column.rank == ASIDE or {line[place] for place in kept} == {ABSENT}
-    ]
+    values = [{line[k] for k in kept} for line in lines]
+    asides = [k for k, column in enumerate(seen) if column.rank == ASIDE or values[k] == {ABSENT}]
     return Table(title, ["", *heads, *after], lines, range(1, len(rows) + 1), ranks, asides)
 
 

@@ -24,6 +24,10 @@ from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import MAX_DETAILED_MOTIONS, Aside, Table, View, number
 
 GOVERNING_ROW = "overturn or unknown"
+LEVELS = (
+    "'First at' is the smallest factor at which so many neighbours overturn the structure; 'always from' the smallest "
+    "from which on no factor tried has fewer."
+)
 
 
 class MarginRow(NamedTuple):
@@ -90,10 +94,7 @@ def view(conditions: Conditions, rows: Sequence[MarginRow], end: Conclusion) -> 
         f"{heading_of_run(structure)}. {of_margin(end, over)}",
         f"Scale factors from {low:.2g} to {high:.2g} on {either}; at each, {around.count} neighbouring motions, "
         f"{deviations(around)}.",
-        Aside(
-            "'First at' is the smallest factor at which so many of them overturn the structure; 'always from' the "
-            "smallest from which on no factor tried has fewer."
-        ),
+        Aside(LEVELS),
         table_of("", COLUMNS, _lines(rows)),
     ]
     if any(row.margin.unknown.any() for row in rows):
