@@ -118,7 +118,7 @@ def _on_the_site(app: Sphinx, page: str, source: list[str]) -> None:
 
 
 def _menus(page: str, text: str) -> str:
-    """Return the menus of a page, from the contents on the first page: all for that, of others those below its entry."""
+    """Return the menus of a page, by the contents on the first page: all of them there, elsewhere those below its entry."""
     if page == "index":
         _, *lists = text.partition("\n## Contents\n")[2].split("\n### ")
         return "".join(_menu(each.partition("\n")[0], ENTRY.findall(each)) for each in lists)
@@ -129,8 +129,8 @@ def _menus(page: str, text: str) -> str:
 
 
 def _menu(caption: str, entries: list[tuple[str, str]]) -> str:
-    lines = [f"{name} </{page}>" for name, page in entries]
-    return "\n".join(["", "```{toctree}", ":hidden:", f":caption: {caption}" * bool(caption), "", *lines, "```", ""])
+    lines = [":hidden:", f":caption: {caption}" * bool(caption), "", *(f"{name} </{page}>" for name, page in entries)]
+    return "\n".join(["", "```{toctree}", *lines, "```", ""])
 
 
 def _signature(app: Sphinx, what: str, name: str, each: Any, *_: Any) -> tuple[str, str] | None:

@@ -30,7 +30,7 @@ TOPICS = {
     "how far to trust it": (3_500, "docs/how_far_to_trust_it.md docs/validation.md docs/scoreboard.md"),
     "performance": (800, "docs/performance.md"),
     "plugins": (4_000, "docs/plugins.md"),
-    "contributing": (2_500, "CONTRIBUTING.md docs/contributing.md docs/architecture.md docs/words.md docs/changelog.md"),
+    "contributing": (2_500, "CONTRIBUTING.md docs/contributing.md docs/[acw][rho][cnar]*.md"),
     "questions and messages": (1_500, "docs/faq.md"),
 }
 """Of each topic the largest number of words, outputs of commands among them, and its files."""

@@ -28,7 +28,8 @@ def _fold(app: Sphinx, page: nodes.document, name: str) -> None:
         for section in top.children:
             if isinstance(section, nodes.section):
                 title, *rest = section.children
-                section.children = [_html('<details class="part" open><summary>'), title, _html("</summary>"), *rest, _html("</details>")]
+                before = _html('<details class="part" open><summary>')
+                section.children = [before, title, _html("</summary>"), *rest, _html("</details>")]
     for content in page.findall(addnodes.desc_content):
         first, rest = content.children[:1], content.children[1:]
         if rest and not isinstance(content.parent.parent, addnodes.desc_content):

@@ -1,4 +1,4 @@
-"""The page on JSON: the keys that each command prints, as the tests hold them, with the meanings that the code declares."""
+"""The page on JSON: the keys that each command prints, as the tests hold them, with meanings that the code declares."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Write the commands and outputs in the pages, pictures and calculation sheets, so that they show what the program does.
+"""Write commands and outputs in the pages, pictures and calculation sheets, so that they show what the program does.
 
     python docs/make_pages.py             # part of make docs
 

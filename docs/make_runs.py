@@ -12,6 +12,7 @@ import re
 import shlex
 import shutil
 import subprocess
+import sys
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import chdir, contextmanager, nullcontext
 from dataclasses import dataclass
@@ -76,7 +77,7 @@ def ran(command: str) -> Run:
         done = CliRunner().invoke(called, arguments[:-2] if into else arguments, env={"COLUMNS": str(WIDTH)})
     if done.exit_code != 0:
         raise SystemExit(f"`{command}` ended with exit code {done.exit_code}:\n{done.output}")
-    lines = [line.rstrip() for line in done.stdout.splitlines()]
+    lines = [line.rstrip() for line in done.stdout.replace(sys.executable, "python").splitlines()]
     output = "\n".join(lines).strip("\n") + "\n"
     if into:
         Path(into).write_text(output, encoding="utf-8")

@@ -426,7 +426,8 @@ def _tables(
         both = found.engines.get(sign)
         compared = joints_across(both, found.contacts[sign]) if both is not None and not conditions.goes_on else ()
         itself, of_blocks, doubts = verdicts(histories, found.agreement[sign], found.assumed_friction(sign))
-        shown = linear or disagree(histories) or LINEAR.isdisjoint(histories)
+        known = not any(run.unknown for run in histories.values())
+        shown = linear or (known and disagree(histories)) or LINEAR.isdisjoint(histories)
         parts.append(f"{under}. {' '.join([*itself, *of_blocks * shown, *doubts])}")
         if sign in found.neighbours:
             following = "" if end.remedy else next_in_words(end)

@@ -420,7 +420,7 @@ def test_what_is_explained_of_an_output_is_printed(name):
 def test_links_lead_somewhere_in_the_repository_too(page):
     text = re.sub(r"^    .*", "", page.read_text(encoding="utf-8"), flags=re.M)  # without code
     for link in re.findall(r"\]\(([^)#\s]+)", text):
-        if not link.startswith(("https:", "reference/", "../reference/")):  # of the site alone, where Sphinx follows them
+        if not link.startswith(("https:", "reference/", "../reference/")):  # Sphinx follows the latter
             assert (page.parent / link).exists(), link
 
 

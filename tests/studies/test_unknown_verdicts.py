@@ -115,7 +115,7 @@ class TestSurvey:
         assert [row["unknown"] for row in survey_views.data(found)["rows"]] == [1.0, 0.0, None]
         assert list(survey_views.columns(found)["unknown"][:2]) == [1.0, 0.0]
         counted = "Under a, 0 of 3 structures overturn, 1 may overturn (unknown outcome), and 3 uplift."
-        assert survey_views.counts(found) == [counted]
+        assert survey_views.counts(found) == [f"{counted} one ranks first."]
         said = " ".join(survey_views.sentences(found))
         assert "one: the outcome under at least one motion is unknown" in said
         assert "the joints of three are not checked" in said

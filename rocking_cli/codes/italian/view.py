@@ -162,8 +162,8 @@ def _methods_in_short(found: ItalianVerification, each: ItalianVerified, where: 
             name, end = f"{name.split()[0]} at {state}", OTHER_ROLES[DAMAGE]
         else:
             end = OTHER_ROLES.get(key.split("_")[0], end)
-        rows.append([name, number(method.a_g, 4), number(method.demand, 4), _ratio(method.zeta), end])
-    return Table(f"{where}: a_g [g] by each method", ["", "capacity", "demand", "zeta_E", ""], rows, numbers=(1, 2, 3))
+        rows.append([name, end, number(method.a_g, 4), number(method.demand, 4), _ratio(method.zeta)])
+    return Table(f"{where}: a_g [g] by each method", ["", "", "capacity", "demand", "zeta_E"], rows, numbers=(2, 3, 4))
 
 
 def _states_in_short(each: ItalianVerified, where: str) -> list[Table]:

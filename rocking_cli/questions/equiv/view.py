@@ -119,7 +119,7 @@ def view(structure: Structure) -> View:
     where = [f"{heading(mechanism)}, {labels[0]}", labels[-1].capitalize()] if shown[1:] else [heading(mechanism)]
     first = [f"{place}. {sentence(side)}" for place, side in zip(where, shown, strict=True)]
     first += [f"Caution: {text}" for text in before_rocking(mechanism)]
-    sentences = [] if structure.why_no_block else [Aside(KAPPAS)]
+    sentences: list[str] = [] if structure.why_no_block else [Aside(KAPPAS)]
     sentences += [f"Caution: {structure.misleading}."] if structure.misleading else []
     sentences += [*hung_in_words(mechanism), *([] if mechanism.rocks_both_ways else [restitution_used(structure)])]
     sentences += [f"P{mechanism.crushing.words[1:]}."] if mechanism.crushing else []

@@ -312,7 +312,7 @@ def _of_motions(found: Survey) -> str:
     unknown = f", {doubtful:,} may overturn (unknown outcome)" if doubtful else ""
     unknown += f", {slides:,} only {'slides' if slides == 1 else 'slide'}" if slides else ""
     verb = "overturns" if falls == 1 else "overturn"
-    first = f" {_named(found.rows[:1])} is the most vulnerable." if found.by == "response" and len(under) > 1 else ""
+    first = f" {_named(found.rows[:1])} ranks first." if found.by == "response" and len(under) > 1 else ""
     return (
         f"Under {motions}, {falls:,} of {_structures(len(under))} {verb}{unknown}, and {lifts:,} "
         f"{'uplifts' if lifts == 1 else 'uplift'}.{first}"

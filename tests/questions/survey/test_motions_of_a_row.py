@@ -57,5 +57,5 @@ def test_a_structure_is_counted_once_as_overturning_or_as_one_that_may():
         )
     ]  # fmt: skip
     (said,) = counts(Survey(rows, motions=["a", "b", "c"], by="response"))
-    assert said.endswith("and 3 uplift. falls or may is the most vulnerable.")
+    assert said.endswith("and 3 uplift. falls or may ranks first.")
     assert "1 of 4 structures overturns, 1 may overturn" in said
