@@ -118,7 +118,7 @@ def _on_the_site(app: Sphinx, page: str, source: list[str]) -> None:
 
 
 def _menus(page: str, text: str) -> str:
-    """Return the menus of a page, by the contents on the first page: all of them there, elsewhere those below its entry."""
+    """Return the menus of a page, by the contents on the first page: all there, elsewhere those below its entry."""
     if page == "index":
         _, *lists = text.partition("\n## Contents\n")[2].split("\n### ")
         return "".join(_menu(each.partition("\n")[0], ENTRY.findall(each)) for each in lists)
