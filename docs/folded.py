@@ -63,7 +63,7 @@ def _of_output(lines: list[str]) -> Iterator[str]:
             continue
         yield _table(table)
         table = []
-        while lines and re.match(r"  \S", lines[0]) and not ALIGNED.search(lines[0].strip()):
+        while lines and re.match(r"  (?!%s)\S" % SHELL.pattern, lines[0]) and not ALIGNED.search(lines[0].strip()):
             line += " " + lines.pop(0).strip()
         yield f'<span class="sentence">{line}</span>'
     yield _table(table)

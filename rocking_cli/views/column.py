@@ -183,7 +183,7 @@ def table_across(
     """Return a table with a line for each column, and the rows side by side under their own headings.
 
     `after` has what follows in each line, by its heading. Terminals show the rows that are `aside`, and lines in which
-    no other row has a value, with --all only.
+    no other row has a value, in full only.
     """
     seen = [column for column in columns if column.head is not None]
     lines = [

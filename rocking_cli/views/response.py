@@ -325,7 +325,7 @@ def view(
     impacts : bool
         Whether to list the impacts: the first in a table, without chatter, all in the data.
     linear : bool
-        Whether equivalent blocks are shown on terminals without --all too.
+        Whether equivalent blocks are shown on terminals in short too.
     """
     structure, given = conditions.structure, found.given
     mechanism = structure.mechanism
@@ -457,7 +457,7 @@ def outcome_table(
 ) -> Table:  # fmt: skip
     """Return a table of outcomes, peaks and times under one polarity, with a column for each model, and more rows.
 
-    Terminals show what the sentences above it state with --all only, and so equivalent blocks if not `linear`.
+    Terminals show what the sentences above it state in full only, and so equivalent blocks if not `linear`.
     """
     runs = list(found.runs[sign].values())
     unknown = any(run.unknown for run in runs)

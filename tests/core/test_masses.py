@@ -39,7 +39,7 @@ def test_without_masses_bodies_weigh_a_kilogram(name):
 @pytest.mark.usefixtures("small_maps")
 def test_without_masses_it_is_per_unit_mass(tmp_path):
     file = EXAMPLES / "wall.yaml"
-    data, said = run_json("equiv", file), flat(run("equiv", file).stdout)
+    data, said = run_json("equiv", file), flat(run("equiv", file, "--all").stdout)
     assert data["per_unit_mass"] is True
     assert "kg" not in said and "linearised inertia, per unit mass" in said
     (row, _) = csv.DictReader(StringIO(run("equiv", file, "-o", "-").stdout))
@@ -56,7 +56,7 @@ def test_with_masses_it_is_in_kilograms(tmp_path):
     assert all(parse_structure(HEAVY + masses, "f.yaml", "f").has_mass for masses in MASSES.values())
     file = tmp_path / "frame.yaml"
     file.write_text(HEAVY + MASSES["masses"], encoding="utf-8")
-    data, said = run_json("equiv", file), flat(run("equiv", file).stdout)
+    data, said = run_json("equiv", file), flat(run("equiv", file, "--all").stdout)
     assert data["per_unit_mass"] is False and "kg m2" in said and "per unit mass" not in said
     run("report", file, "-o", tmp_path / "r.html")
     page = (tmp_path / "r.html").read_text(encoding="utf-8")
@@ -72,7 +72,7 @@ def test_the_caution_of_the_wall_is_shown_where_it_is_looked_up_and_used(tmp_pat
     assert "Unconservative without a load on top" in wall.caution
     assert json.loads(run("mechanisms", "wall", "--json").stdout)["caution"] == wall.caution
     assert wall.caution in flat(run("mechanisms", "wall").stdout)
-    assert wall.caution in flat(run("equiv", file).stdout) and run_json("equiv", file)["caution"] == wall.caution
+    assert wall.caution in flat(run("equiv", file, "--all").stdout) and run_json("equiv", file)["caution"] == wall.caution
     out = tmp_path / "r.html"
     run("report", file, "-o", out)
     assert wall.caution.replace("lambda", "λ") in flat(out.read_text(encoding="utf-8"))

@@ -54,7 +54,7 @@ class Several:
     asked : int
         Number of motions that were given, with those that could not be used.
     linear : bool
-        Whether equivalent blocks are shown on terminals without --all too, as they are if the outcomes of models
+        Whether equivalent blocks are shown on terminals in short too, as they are if the outcomes of models
         disagree.
     """
 
@@ -165,7 +165,7 @@ class Several:
     def _joints(self) -> Iterator[str]:
         """Yield until when motions are known, the friction that each requires, and the joints that fail.
 
-        If the joints hold under all motions, yield the demands of the most demanding one, for --all.
+        If the joints hold under all motions, yield the demands of the most demanding one, shown in full only.
         """
         for name, until in self._until.items():
             yield f"{name}: {until}"

@@ -81,7 +81,8 @@ def test_free_blocks_give_the_runs_that_one_degree_of_freedom_does_not_tell(whol
 @NEEDS_BLOCKS
 def test_the_output_names_the_engine_of_each_run(whole, tmp_path):
     _, place, _ = whole
-    told, data = command("results", place).stdout, json.loads(command("results", place, "--json").stdout)
+    told = " ".join(command("results", place).stdout.split())
+    data = json.loads(command("results", place, "--json").stdout)
     assert "study: stripes, 1 record, 2 runs (1 with free blocks), seed 0" in told
     sentence = "Engine: free blocks (MuJoCo) for 1 of 2 runs; one degree of freedom for all others."
     assert sentence in told and sentence in data["notes"][-1]

@@ -113,7 +113,7 @@ class TestDoubts:
     def test_a_motion_of_zeros_has_dashes_and_nulls(self, tmp_path):
         (tmp_path / "zero.txt").write_text("accel_g\n0\n0\n0\n", encoding="utf-8")
         assert run_json("record", "zero.txt", "--dt", "0.01")["significant_duration"] is None
-        assert re.search(r"5-95 % duration +- +s", run("record", "zero.txt", "--dt", "0.01").stdout)
+        assert re.search(r"5-95 % duration +- +s", run("record", "zero.txt", "--dt", "0.01", "--all").stdout)
 
 
 class TestScaling:
