@@ -85,7 +85,7 @@ def test_the_output_names_the_engine_of_each_run(whole, tmp_path):
     data = json.loads(command("results", place, "--json").stdout)
     assert "study: stripes, 1 record, 2 runs (1 with free blocks), seed 0" in told
     sentence = "Engine: free blocks (MuJoCo) for 1 of 2 runs; one degree of freedom for all others."
-    assert sentence in told and sentence in data["notes"][-1]
+    assert sentence in told and sentence in " ".join(data["notes"])
     assert (data["engine"], data["by_blocks"], data["outcomes"][0]["by_blocks"]) == ("auto", 1, 1)
     assert data["outcomes"][0]["checked"] and data["versions"]["mujoco"] == scene.engine_version()
     command("results", place, "--out", tmp_path / "runs.csv")
