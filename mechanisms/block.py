@@ -138,14 +138,15 @@ class Block(SingleBody):
         are then above the middle of its depth. A wall given by the metre is at least as deep as it is thick, so that
         this never applies to it. With `crushing` the strip at its foot is known for the given side only.
         """
-        masses = self.loads or ()
-        alone = self.plane is None and self.one_sided is None and not (self.ties or self.interlock or self.crushing)
-        if not alone or self.depth is None or not self.depth < self.width:
+        if self.depth is None or not self.depth < self.width or not self.may_rock_about_depth():
             return None
-        if any(load.mass is None or load.floor is not None for load in masses):
-            return None
-        centred = [{**load.model_dump(exclude_unset=True), "at": [0.0, load.at[1]]} for load in masses]
+        loads = self.loads or ()
+        centred = [{**load.model_dump(exclude_unset=True), "at": [0.0, load.at[1]]} for load in loads]
         return self.model_copy(update={"width": self.depth, "depth": self.width, "loads": centred or None})
+
+    def may_rock_about_depth(self) -> bool:
+        alone = self.plane is None and self.one_sided is None and not (self.ties or self.interlock or self.crushing)
+        return alone and all(load.mass is not None and load.floor is None for load in self.loads or ())
 
     def own_caution(self) -> str:
         """Return a caution if the block may rock about its depth, with the lambda of this side, and about a corner."""

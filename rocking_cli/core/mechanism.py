@@ -83,6 +83,10 @@ class Mechanism(Jointed):
         """Return the structure as it rocks about the weaker side of its base, if it may; by default None."""
         return None
 
+    def may_rock_about_depth(self) -> bool:
+        """Return whether it may rock about its depth, if that is the weaker side of its base; by default not."""
+        return False
+
     @final
     def cautions(self) -> Sequence[str]:
         """Return cautions on the results: the `caution` of the mechanism, and that of this structure."""

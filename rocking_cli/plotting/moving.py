@@ -146,17 +146,18 @@ def _ratio_chart(curves: Sequence[tuple[str, str, History, float]], bins: int) -
 
 
 def ground_chart(motion: GroundMotion, fits: Sequence[PulseFit], bins: int = BINS_ACROSS) -> dict[str, Any]:
-    """Return a chart of the ground acceleration [g] against time, with the pulses in it."""
+    """Return a chart of the acceleration [g] of the ground, or the floor, against time, with the pulses in it."""
     motion = motion.kept
     ground = motion.acceleration / STANDARD_GRAVITY
     shown = visible(ground, bins)
     look = "record" if fits else "trace"
-    series = [_series("ground", look, shown.astype(np.float64) * motion.dt, ground[shown])]
+    what = "ground" if motion.ground is None else "floor"
+    series = [_series(what, look, shown.astype(np.float64) * motion.dt, ground[shown])]
     for fit in fits:
         t = fit.start + np.linspace(0.0, fit.pulse.duration, PULSE_POINTS)
         series.append(_series(f"its pulse ({fit.pulse.title})", "pulse", t, fit.acceleration(t) / STANDARD_GRAVITY))
     tall = 1.1 * max(max(abs(value) for value in each["y"]) for each in series)
-    return {"label": "ground acceleration [g]", "tall": tall or 1.0, "levels": [], "series": series}
+    return {"label": f"{what} acceleration [g]", "tall": tall or 1.0, "levels": [], "series": series}
 
 
 def _series(name: str, look: str, x: Reals, y: Reals) -> dict[str, Any]:

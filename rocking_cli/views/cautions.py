@@ -28,11 +28,17 @@ NEAR_FRICTION = 0.2  # relative difference of friction from that which decides, 
 
 def cautions_of(mechanism: Mechanism, say: Language = ENGLISH) -> list[str]:
     """Return all cautions on a structure; those on what starts before it rocks come first."""
-    cautions = [*before_rocking(mechanism), *of_friction(mechanism), *of_restitution(mechanism), *of_bounds(mechanism)]
-    return [
-        say.caution(mechanism.mechanism, each) if each == mechanism.caution else say.recognised("caution", each)
-        for each in (*cautions, *mechanism.cautions())
-    ]
+    limits = mechanism.friction is not None or mechanism.strength is not None or bool(mechanism.attached)
+    # A body on its foot neither slides nor opens before it rocks: that need not be computed of each row of a table.
+    early = limits or len(mechanism.bodies()) > 1
+    cautions = [*before_rocking(mechanism), *of_friction(mechanism)] if early else []
+    cautions += [*of_restitution(mechanism), *of_bounds(mechanism), *mechanism.cautions()]
+    return [in_language(mechanism.mechanism, mechanism.caution, each, say) for each in cautions]
+
+
+def in_language(mechanism: str, of_all: str, caution: str, say: Language) -> str:
+    """Return a caution in a language; `of_all` is that on all structures of the mechanism."""
+    return say.caution(mechanism, caution) if caution == of_all else say.recognised("caution", caution)
 
 
 def of_bounds(mechanism: Mechanism) -> list[str]:

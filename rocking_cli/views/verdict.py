@@ -428,7 +428,7 @@ def contact_parts(found: ContactDemand, mechanism: Mechanism) -> list[str]:
     if isnan(found.friction_needed):
         return []
     beyond = "" if found.followed else NOT_VALID_BEYOND
-    sentences = _friction(found, beyond)
+    sentences = _friction(found, beyond, alone=len(mechanism.bodies()) == 1)
     if found.impact_friction > max(found.friction_needed, found.friction or 0.0):
         sentences.append(
             f"Impacts require a coefficient of friction of {number(found.impact_friction, 3)}, and much more with a "
@@ -485,11 +485,12 @@ def _at_impacts(found: ContactDemand, mechanism: Mechanism) -> str:
     return ": the check of the joints counts how far they slide at impacts"
 
 
-def _friction(found: ContactDemand, beyond: str) -> list[str]:
+def _friction(found: ContactDemand, beyond: str, *, alone: bool) -> list[str]:
     needed, at = number(found.friction_needed, 3), f"at {number(found.time, 4)} s"
     where = _where(found.joint) if found.joint else "the structure"
     if found.friction is None:
         usual = f"{'more' if found.beyond_masonry else 'no more'} than the {MASONRY_FRICTION:g} usual for masonry"
+        usual += " (measure it for marble, metal or wood)" * (alone and not found.beyond_masonry)
         lasts = f"more than {100 * NEAR_PEAK:.0f} % of this value for {number(found.duration, 2)} s."
         return [
             f"Contact: {where} requires a coefficient of friction of up to {needed}, {at}, {usual}.",

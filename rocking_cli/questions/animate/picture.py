@@ -422,7 +422,8 @@ def animation_page(films: Film | Sequence[Film], title: str, speed: float = 1.0)
     start = Scene((first, *others)).start
     label = "as it moves" if others else f"{title}, as it moves"
     data = moving(first, [ratios, ground_chart(motion, [])], label=label, speed=speed, moment=start, beside=others)
-    about = f"{motion.name}, PGA {motion.of_ground.pga_g:.3g} g; {' and '.join(models)} model{'s' * (len(models) > 1)}"
+    of = f"PGA of the ground {motion.of_ground.pga_g:.3g} g, of the floor" if motion.ground is not None else "PGA"
+    about = f"{motion.name}, {of} {motion.pga_g:.3g} g; {' and '.join(models)} model{'s' * (len(models) > 1)}"
     verdicts = [f"{each.name}: {verdict_of(each)}" if others else verdict_of(each) for each in (first, *others)]
     parts = {
         "TITLE": html.escape(title),

@@ -188,6 +188,8 @@ class Design:
         The neighbours of the motion that governs at each value; None of a metric that needs no motions.
     caution : str
         A caution about the lambda of the structure as given; empty if there is none.
+    depth_governs : sequence of (float, float)
+        The ranges in which the structure is judged as it rocks about its depth, the weaker side of its base.
     taken_otherwise : sequence of LeftOut
         What the code does not count of the structure, at either end of the scan.
     motions : sequence of str
@@ -215,6 +217,7 @@ class Design:
     motions: Sequence[str] = ()
     steel: SteelAnswer | None = None
     limits: Sequence[Limit] = ()
+    depth_governs: Sequence[tuple[float, float]] = ()
 
     @property
     def decisive(self) -> float:
@@ -289,6 +292,8 @@ def design(
     is not searched: a metric that is not monotonic there may hide a range. If a metric of time histories is not
     monotonic over the scan, edges are values of the scan, because a root would be one of many.
 
+    A structure that may rock about its depth is judged about the weaker side of its base, as in `survey`.
+
     An unknown outcome meets no requirement: it counts as overturning if the metric must be small, and the metric does
     not exist if it must be large.
     """
@@ -332,17 +337,29 @@ def design(
             return _last_that_holds(metric, aim, *ends, closest)
         return _edge(metric, aim, *ends)
 
+    def turned(value: float) -> bool:
+        try:
+            return structure.varied(field, value).mechanism.weaker_side() is not None
+        except (InputError, MechanismError):  # the reason is listed in `not_built`
+            return False
+
+    def turns(inside: int, outside: int) -> float:
+        ends, closest = (float(values[inside]), float(values[outside])), EDGE_TOLERANCE * float(np.ptp(values))
+        return ends[0] if whole else _last(turned, *ends, closest)
+
     met = [aim.holds(number) for number in numbers.tolist()]
     holds = _ranges(values, met, edge)
     value = None if all(met) or not holds else holds[-1][0] if met[-1] else holds[0][1] if met[0] else None
     return Design(
         structure.name, field, structure.unit_of(field), aim, structure.value_of(field), values, numbers, holds,
-        monotone, value, _not_built(values, reasons), behind, structure.mechanism.own_caution(),
+        monotone, value, _not_built(values, reasons), behind,
+        structure.mechanism.own_caution() if structure.mechanism.weaker_side() is None else "",
         _taken_otherwise(structure, field, span, site), [each.name for each in excitation.motions],
         None if value is None else steel_answer(
             structure, field, value, float(values[-1] if met[-1] else values[0]), of_code=aim.metric.of_code
         ),
         _limits(structure, field, _closest(values, numbers, aim.level) if value is None else value, site),
+        _ranges(values, [*map(turned, values.tolist())], turns),
     )  # fmt: skip
 
 
@@ -382,9 +399,16 @@ def _closest(values: Reals, metric: Reals, level: float) -> float:
 def _limits(structure: Structure, field: str, value: float, site: SiteFile | None) -> Sequence[Limit]:
     """Return what limits the verification at a value; nothing without a site, or where it cannot be made."""
     try:
-        return () if site is None else verify(structure.varied(field, value), site).limits
+        return () if site is None else verify(_varied(structure, field, value), site).limits
     except (InputError, MechanismError):  # the reason is listed in `not_built`
         return ()
+
+
+def _varied(structure: Structure, field: str, value: float) -> Structure:
+    """Return the structure with another value of a field, as it rocks about the weaker side of its base."""
+    varied = structure.varied(field, value)
+    weaker = varied.mechanism.weaker_side()
+    return varied if weaker is None else structure.of(weaker)
 
 
 def _at(
@@ -392,7 +416,7 @@ def _at(
 ) -> tuple[float, Neighbours | None, str | None]:
     """Return the metric at a value of the field, and the neighbours it was counted from; or NaN and the reason."""
     try:
-        varied = structure.varied(field, value)
+        varied = _varied(structure, field, value)
         number, neighbours = aim.metric.at(varied, excitation)
     except InputError as error:
         return nan, None, "; ".join(str(Problem(problem.message, field=problem.field)) for problem in error.problems)
@@ -456,11 +480,16 @@ def _edge(at: Callable[[float], float], aim: Aim, inside: float, outside: float)
 
 def _last_that_holds(at: Callable[[float], float], aim: Aim, inside: float, outside: float, closest: float) -> float:
     """Return by bisection the last value that meets a requirement, if the metric is a step function or NaN outside."""
+    return _last(lambda value: aim.holds(at(value)), inside, outside, closest)
+
+
+def _last(holds: Callable[[float], bool], inside: float, outside: float, closest: float) -> float:
+    """Return by bisection the last value at which a condition holds."""
     while abs(outside - inside) > closest:
         middle = (inside + outside) / 2
         if middle in (inside, outside):
             break
-        inside, outside = (middle, outside) if aim.holds(at(middle)) else (inside, middle)
+        inside, outside = (middle, outside) if holds(middle) else (inside, middle)
     return inside
 
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import partial
+from math import inf
 from typing import Any
 
 import numpy as np
 
 from rocking_cli import names
 from rocking_cli.core.hung.ties import BAR_DIAMETERS
+from rocking_cli.errors import named
 from rocking_cli.names import percent
 from rocking_cli.questions.design.metrics import Excitation
 from rocking_cli.questions.design.study import TREND_TOLERANCE, Bars, Design, SteelAnswer
@@ -28,7 +30,7 @@ MAX_SCAN_ROWS = 11  # values of the scan that the table lists
 def view(found: Design, excitation: Excitation) -> View:
     """Show the answer in a sentence, the scan, and remarks."""
     title = f"{found.structure}: {found.field} for {found.aim}"
-    first = " ".join(filter(None, [f"{title}. {answer(found)}", *in_steel(found), *limited(found)]))
+    first = " ".join(filter(None, [f"{title}. {_verdict(found)}", *in_steel(found), *limited(found)]))
     count = len(found.values)
     some = np.unique(np.linspace(0, count - 1, min(MAX_SCAN_ROWS, count)).round().astype(int))
     scan = table_of("", _columns(found), some.tolist())
@@ -56,7 +58,8 @@ def data(found: Design) -> dict[str, Any]:
         "not_built": [{"low": each.low, "high": each.high, "reason": each.reason} for each in found.not_built],
         "taken_otherwise": not_counted(found.taken_otherwise),
         "caution": found.caution or None,
-        "verdict": answer(found),
+        "depth_governs": [list(each) for each in found.depth_governs],
+        "verdict": _verdict(found),
     }
 
 
@@ -110,6 +113,20 @@ def answer(found: Design) -> str:
         return f"{sentence}."
     trend = "upwards" if found.is_least else "downwards"
     return f"{sentence}: from {_with_unit(found, found.value)} {trend} without a gap."
+
+
+def about_depth(found: Design) -> Iterator[str]:
+    """Yield where the depth governs, as the weaker side of the base."""
+    for low, high in found.depth_governs:
+        first, last = low <= found.values[0], high >= found.values[-1]
+        start, end = _with_unit(found, low), _with_unit(found, high)
+        where = f"From {start} on" if last else f"Up to {end}" if first else f"From {start} to {end}"
+        where = "At every value tried" if first and last else where
+        yield f"{where}, the depth is the weaker side of the base and governs, unless the file gives `plane: width`."
+
+
+def _verdict(found: Design) -> str:
+    return " ".join([answer(found), *about_depth(found)])
 
 
 COUNTS = {1: "one bar", 2: "two bars", 3: "three bars", 4: "four bars"}
@@ -166,7 +183,7 @@ def doubts(found: Design, excitation: Excitation) -> list[str]:
     sentences = [f"{each} Next: {NEXT_STEPS[NextStep.YIELD_FORCE]}." for each in not_counted(found.taken_otherwise)]
     count, there = len(found.values), found.metric[~np.isnan(found.metric)]
     same = there.size > 1 and np.allclose(there, there[0], rtol=TREND_TOLERANCE, atol=0.0)
-    if same and not found.aim.metric.shaken:
+    if same and (not found.aim.metric.shaken or 0 < there[0] < inf and there[0] != 1):  # not where shares end
         what = f"{found.aim.metric.name} is the same at every value tried"
         sentences.append(f"{what}: {found.field} has no effect on it.")
     if not found.monotone and np.isfinite(found.metric).any():
@@ -188,6 +205,9 @@ def doubts(found: Design, excitation: Excitation) -> list[str]:
             f"steps of {percent(1 / excitation.around.count)}."
         )
         sentences += _not_known(found)
+        if len(excitation.polarities) == 1:
+            way = "as given" if excitation.polarities[0] > 0 else "reversed"
+            sentences.append(f"Motions {way} only: give {named('polarity')} both, as the other may be worse.")
         if len(excitation.motions) > 1:
             sentences.append(f"At each value, the worst of {len(excitation.motions)} motions governs.")
     return sentences

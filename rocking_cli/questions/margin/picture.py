@@ -42,7 +42,7 @@ def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
         look = style.distinct(k) | {"marker": "", "linewidth": style.BOLD}
         colour = look["color"]
         axes.fill_between(each.factors, *each.interval, color=colour, alpha=0.15, linewidth=0)
-        label = style.plain(f"{cut(name, MAX_NAME_LENGTH)}, PGA {each.pga_g:.3g} g{_uplift(each, ', ')}")
+        label = style.plain(f"{cut(name, MAX_NAME_LENGTH)}, {each.of_pga} {each.pga_g:.3g} g{_uplift(each, ', ')}")
         curves += axes.plot(each.factors, each.overturned, label=label, **look)
         axes.plot(1.0, each.share.lowest, color=colour, clip_on=False, **style.STAR)
         if each.unknown.any():
@@ -64,7 +64,7 @@ def draw_margins(margins: Mapping[str, Margin], title: str) -> Figure:
         )
         style.plain_numbers(top.xaxis)
         top.tick_params(labelsize=style.TICK, colors=style.INK)
-        top.set_xlabel("PGA [g]", fontsize=style.LABEL)
+        top.set_xlabel(f"{first.of_pga} [g]", fontsize=style.LABEL)
     legend = ["star: as given", "" if alone else "tick: uplift"]
     legend += [f"shaded: 5 to 95 % interval of a share of {first.around.count} neighbours"]
     legend += ["hatched: unknown outcomes" if any(each.unknown.any() for each in margins.values()) else ""]

@@ -58,6 +58,8 @@ class Margin:
         Peak ground acceleration of the motion at a factor of 1 [standard gravity].
     polarities : sequence of int
         The polarities that were simulated.
+    on_floor : bool
+        Whether the structure stands on a floor, below which the ground has this peak.
     """
 
     around: Neighbourhood
@@ -71,6 +73,12 @@ class Margin:
     off_edge: int = 0
     pga_g: float = field(kw_only=True)
     polarities: Sequence[int] = field(kw_only=True)
+    on_floor: bool = False
+
+    @property
+    def of_pga(self) -> str:
+        """The name of the peak acceleration."""
+        return "PGA of the ground" if self.on_floor else "PGA"
 
     @property
     def at_most(self) -> Reals:
@@ -180,6 +188,7 @@ def margin(
         around, least, factors, overturned, at_most - overturned, engine=conditions.by.name, by_blocks=by_blocks,
         off_edge=off_edge, checked=model.joints is not None or conditions.engine == "blocks",
         pga_g=motion.of_ground.pga_g, polarities=tuple(polarities),
+        on_floor=motion.ground is not None,
     )  # fmt: skip
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -23,6 +23,7 @@ from rocking_cli.views.restitution import heading_of_run, restitution_data, rest
 from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import MAX_DETAILED_MOTIONS, Aside, Table, View, number
 
+PGA_HEAD = "PGA\n[g]"
 GOVERNING_ROW = "overturn or unknown"
 LEVELS = (
     "'First at' is the smallest factor at which so many neighbours overturn the structure; 'always from' the smallest "
@@ -68,7 +69,7 @@ def _at_level(find: Callable[..., float | None], level: float) -> Callable[[_Lin
 
 COLUMNS: tuple[Column[_Line], ...] = (
     only_shown("motion", of("name"), text=True),
-    only_shown("PGA\n[g]", of("pga"), rank=4),
+    only_shown(PGA_HEAD, of("pga"), rank=4),
     only_shown("uplift\nat", of("uplift"), rank=5),
     only_shown("overturn\nat 1", of("share"), percent),
     *(
@@ -90,12 +91,13 @@ def view(conditions: Conditions, rows: Sequence[MarginRow], end: Conclusion) -> 
         "both": "motions as given and reversed (the worse of the two counts)",
     }[conditions.polarity]
     low, high = rows[0].margin.factors[[0, -1]]
+    head = "PGA of\nground [g]" if rows[0].margin.on_floor else PGA_HEAD
     parts: list[Table | str] = [
         f"{heading_of_run(structure)}. {of_margin(end, over)}",
         f"Scale factors from {low:.2g} to {high:.2g} on {either}; at each, {around.count} neighbouring motions, "
         f"{deviations(around)}.",
         Aside(LEVELS),
-        table_of("", COLUMNS, _lines(rows)),
+        table_of("", [replace(each, head=head) if each.head == PGA_HEAD else each for each in COLUMNS], _lines(rows)),
     ]
     if any(row.margin.unknown.any() for row in rows):
         parts.append(
@@ -202,12 +204,12 @@ def _reached(found: Margin, shares: NDArray[np.float64], does: str) -> list[str]
     ]
     if not reached:
         return [
-            f"At no scale factor from {low:.2g} to {high:.2g} (PGA from {low * found.pga_g:.3g} g to "
+            f"At no scale factor from {low:.2g} to {high:.2g} ({found.of_pga} from {low * found.pga_g:.3g} g to "
             f"{high * found.pga_g:.3g} g) do {percent(SHARE_LEVELS[0])} or more of the neighbouring motions "
             f"{does.removesuffix(',')}."
         ]
     (level, first), *others = reached
-    parts = [f"{percent(level)} of the neighbouring motions first {does} at a factor of {at(first, 'PGA ')}"]
+    parts = [f"{percent(level)} of the neighbouring motions first {does} at a factor of {at(first, f'{found.of_pga} ')}"]
     parts += [f"{percent(level)} at {at(first)}" for level, first in others]
     parts += [f"{percent(level)} at none up to {high:.2g}" for level in SHARE_LEVELS[len(reached) :]]
     sentence = f"At least {', '.join(parts[:-1])} and {parts[-1]}"

@@ -100,7 +100,6 @@ def document(content: Assessment, sources: SheetSources, verified: VerifiedRepor
         "one_model": len(content.structure.default_models) == 1,
         "parameters": _parameters(content, sides),
         "doubtful": any(each.result.neighbours[each.result.polarity].unknown for each in motions),
-        "on_floor": any(each.result.motion.ground is not None for each in motions),
         "followed": any(contact.followed for each in motions for contact in each.result.contacts.values()),
         "fitted": [(name, fit, amplitude_in_g(fit)) for name, fit in fits],
         "errors": of_block,

@@ -34,6 +34,7 @@ ERROR_AMPLITUDES, ERROR_ACCELERATIONS = (0.25, 0.5, 0.75), (1.5, 2.0, 4.0)
 FITTED_PULSES = ("sine", "ricker")  # those whose only parameters are the two axes of a map, amplitude and period
 MIN_CAUTIONED_FACTOR = 2.0  # scale factor on a record, above which a report has a caution
 MAX_CLOSE_FACTOR = 1.25  # factor on the motion: a result is close if neighbours within it have the opposite outcome
+SURE_SHARE = 0.95  # share of neighbours of one outcome from which that outcome is not close to another
 MAP_POINTS, MAP_SHAPE = 256, "sine"  # points along each side of the map, and the shape of its pulses
 
 
@@ -88,10 +89,16 @@ class MotionResult(Response):
         return abs(self.given.factor) > MIN_CAUTIONED_FACTOR
 
     @property
+    def decisive(self) -> bool:
+        """Whether nearly all neighbours have the same outcome."""
+        near = self.neighbours[self.polarity]
+        return near.overturned >= SURE_SHARE or near.at_most <= 1 - SURE_SHARE
+
+    @property
     def close(self) -> bool:
         """Whether the outcome is known, and a small change of the motion or of the model could give another outcome."""
         best = self.histories["nonlinear"]
-        if best.unknown:
+        if best.unknown or (best.fell and self.decisive):
             return False
         if disagree(self.histories) or self.neighbours[self.polarity].sensitive or best.peak_ratio > NEAR_OVERTURNING:
             return True

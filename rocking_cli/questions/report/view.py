@@ -117,6 +117,8 @@ def context(content: Assessment, say: Language, verified: Verification | None = 
         "unknown": [each for each in motions if each.result.unknown],
         "overturning": [each for each in motions if any(isnan(point.horizontal) for point in each.worst.points)],
         "close": all(each.close for each in falls) if falls else any(each.close for each in content.results),
+        "decisive": all(each.decisive for each in content.results if each.close),
+        "on_floor": any(each.motion.ground is not None for each in content.results),
         "not_holding": any(not contact.holds and not contact.followed for contact in contacts),
         "sliding": any(contact.assumed_friction is not None for contact in contacts),
         "governs": governs,

@@ -95,8 +95,9 @@ class SurveyAsked(MaybeUnderMotions, OfJoints, Around, InLanguage, Identity, Wit
     )
     plot: Path | None = plot_file("Plot the uplift acceleration against the frequency parameter")
     idle = (
-        Idle("without calculation sheets: give {sheets}", lambda asked: asked.sheets is None,
-             ("sheet_format", *IDENTITY)),
+        Idle("without calculation sheets: give {sheets}", lambda asked: asked.sheets is None, ("sheet_format",)),
+        Idle("without a page or calculation sheets: give {page} or {sheets}",
+             lambda asked: asked.sheets is None and asked.page is None, IDENTITY),
         Idle("without ground motions", lambda asked: not asked.ground_motions, ("polarity", "opening", *NEIGHBOURS)),
         Idle("without neighbours", lambda asked: asked.neighbours == 0, DEVIATIONS),
     )  # fmt: skip

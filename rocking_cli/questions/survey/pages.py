@@ -38,7 +38,9 @@ SUBSCRIPT = re.compile(r"([φθλωψ]|\b[A-Za-z])_([A-Za-z]+(?:,\d)?)")
 SYMBOLS = {"zeta": "ζ", "lambda": "λ", "phi_cr": "φ_cr", "kappa2": "κ₂", "eta": "η"}
 
 
-def render(found: Survey, source: str, about: Sequence[str], say: Language = ENGLISH) -> str:
+def render(
+    found: Survey, source: str, about: Sequence[str], say: Language = ENGLISH, logo: str | None = None
+) -> str:  # fmt: skip
     """Return the page of a survey.
 
     Parameters
@@ -48,9 +50,11 @@ def render(found: Survey, source: str, about: Sequence[str], say: Language = ENG
     source : str
         Source of the structures.
     about : sequence of str
-        Further lines of the heading: date and command.
+        Further lines of the heading: project, date and command.
     say : Language
         The language.
+    logo : str, optional
+        The author's logo as a data URL.
     """
     parts: list[Table | str] = [
         table(found, MAX_PAGE_ROWS, longest=None, say=say),
@@ -63,6 +67,7 @@ def render(found: Survey, source: str, about: Sequence[str], say: Language = ENG
     page = template("survey.html", symbols=symbols).render(
         source=source,
         about=about,
+        logo=logo,
         say=say,
         title=rows.title,
         said=[str(each).replace("`", "") for each in lines],

@@ -128,8 +128,8 @@ class Surveyed:
         Why there is no equivalent block; None if there is one.
     doubt : str or None
         A doubt about the size of the structure, if any.
-    caution : str or None
-        A caution about the lambda of the structure, if any.
+    cautions : sequence of str
+        Cautions on the results of the structure.
     under : SurveyResponse, optional
         Response to ground motions, if there are any.
     ratio : float, optional
@@ -143,6 +143,10 @@ class Surveyed:
         Sentences on how fields of the structure were read, such as weights as masses.
     numbers : mapping of str to float or None
         Further numbers of that verification, those of `Survey.units`.
+    width_alone : bool
+        Whether it may rock about its depth, which is not given.
+    any_friction : bool
+        Whether it is a single body without a given friction, which never slides.
     """
 
     row: int
@@ -159,7 +163,7 @@ class Surveyed:
     eta: float
     no_block: str | None = None
     doubt: str | None = None
-    caution: str | None = None
+    cautions: Sequence[str] = ()
     under: SurveyResponse | None = None
     ratio: float | None = None
     verified: Conclusion | None = None
@@ -167,6 +171,13 @@ class Surveyed:
     remarks: Sequence[str] = ()
     numbers: Mapping[str, float | None] = field(default_factory=dict)
     side: str | None = None
+    width_alone: bool = False
+    any_friction: bool = False
+
+    @property
+    def caution(self) -> str | None:
+        """The cautions as one text; None without any."""
+        return " ".join(self.cautions) or None
 
 
 @dataclass(frozen=True)
@@ -225,6 +236,20 @@ ORDERS: Mapping[str, Order] = {"lambda": _by_lambda, "response": _by_response, "
 """Sort keys of rankings: the structure with the smaller key is the more vulnerable."""
 
 
+class Shaken(NamedTuple):
+    """How ground motions shake the structures: polarities, peak accelerations of ground and floor [standard gravity]."""
+
+    polarities: Sequence[int]
+    ground: Sequence[float]
+    floor: Sequence[float]  # empty if the structures stand on the ground
+
+    @classmethod
+    def by(cls, motions: Sequence[GroundMotion], polarities: Sequence[int]) -> Shaken:
+        """Return how motions shake structures."""
+        on_floor = [each.pga_g for each in motions if each.ground is not None]
+        return cls(polarities, [each.of_ground.pga_g for each in motions], on_floor)
+
+
 @short_repr
 @dataclass(frozen=True)
 class Survey:
@@ -240,6 +265,8 @@ class Survey:
         The names of the ground motions.
     around : Neighbourhood
         The neighbours of each motion; a count of 0 for none.
+    shaken : Shaken, optional
+        How the ground motions shake the structures, if there are any.
     reduced : bool
         Whether there are fewer neighbours than usual, so that the survey takes no more than about a minute.
     by : str
@@ -258,6 +285,7 @@ class Survey:
     sheet: Spreadsheet | None = None
     around: Neighbourhood = NO_NEIGHBOURS
     reduced: bool = False
+    shaken: Shaken | None = None
 
     def cells(self, found: Surveyed) -> Sequence[str]:
         """Return the cells of a structure in its table; none without a table."""
@@ -273,6 +301,7 @@ def survey(
     around: Neighbourhood = NO_NEIGHBOURS,
     bounded: bool = False,
     opening: float = OPENING,
+    cautions: Callable[[Mechanism], Sequence[str]] = Mechanism.cautions,
     threads: int | None = None,
     processes: int | None = None,
     progress: Callable[[int], None] | None = None,
@@ -296,6 +325,8 @@ def survey(
         so that a table has the same ranks on every machine.
     opening : float
         Largest opening of a joint, over D_cr, up to which a history is known.
+    cautions : callable
+        Returns the cautions on a structure.
     threads : int, optional
         Number of threads; by default one for each processor.
     processes : int, optional
@@ -317,7 +348,7 @@ def survey(
     samples = len(entries) * len(polarities) * sum(motion.npts for motion in motions)
     if reduced := bounded and samples * around.count > MAX_SAMPLES:
         around = replace(around, count=MAX_SAMPLES // samples)
-    part = partial(_part, entries, Setting(motions, polarities, around, site, opening))
+    part = partial(_part, entries, Setting(motions, polarities, around, site, opening, cautions))
 
     def work(first: int, stop: int) -> None:
         results[first:stop] = part(first, stop)
@@ -334,17 +365,19 @@ def survey(
     bad, names = [each for each in results if isinstance(each, FailedEntry)], [each.name for each in motions]
     numbers = code_of(site).row_numbers if site is not None else {}
     units = {name: number.unit for name, number in numbers.items()}
-    return Survey(good, bad, names, by, units, getattr(entries, "sheet", None), around, reduced)
+    sheet, shaken = getattr(entries, "sheet", None), Shaken.by(motions, polarities) if motions else None
+    return Survey(good, bad, names, by, units, sheet, around, reduced, shaken)
 
 
 class Setting(NamedTuple):
-    """What all structures have in common: ground motions, polarities and neighbours; the site; and `opening`."""
+    """What all structures have in common: ground motions, polarities, neighbours, site, `opening`, and `cautions`."""
 
     motions: Sequence[GroundMotion]
     polarities: Sequence[int]
     around: Neighbourhood
     site: SiteFile | None
     opening: float
+    cautions: Callable[[Mechanism], Sequence[str]]
 
 
 def _part(
@@ -362,8 +395,11 @@ def _part(
             ready[k] = Structure(weaker or made, opening=setting.opening)
             asked = questioned(Structure(made), setting.site) if setting.site is not None else []
             odd = [*doubts(made), *(f"{each.name} {each.words}" for each in asked)]
-            alone = replace(_alone(place, entry, ready[k], setting.site), doubt="; ".join(odd) or None)
-            rows[k] = replace(alone, side="depth" if weaker is not None else None, remarks=made.remarks)
+            alone = replace(_alone(place, entry, ready[k], setting), doubt="; ".join(odd) or None)
+            rows[k] = replace(
+                alone, side="depth" if weaker is not None else None, remarks=made.remarks,
+                width_alone=made.depth is None and made.may_rock_about_depth(),
+            )  # fmt: skip
             if _may_move(ready[k], setting):
                 ready[k].model("nonlinear")
                 moving[k] = ready[k]
@@ -391,9 +427,9 @@ def _part(
     return rows
 
 
-def _alone(place: int, entry: SurveyEntry, structure: Structure, site: SiteFile | None) -> Surveyed:
+def _alone(place: int, entry: SurveyEntry, structure: Structure, setting: Setting) -> Surveyed:
     """Return the results of a structure without ground motions."""
-    mechanism, sides = structure.mechanism, structure.statics
+    mechanism, sides, site = structure.mechanism, structure.statics, setting.site
     k = int(sides[1].lambda_ < sides[0].lambda_ * (1 - 1e-9))
     direction, side = mechanism.sides[k], sides[k]
     why = structure.why_no_block
@@ -413,7 +449,8 @@ def _alone(place: int, entry: SurveyEntry, structure: Structure, site: SiteFile 
         block.kappa2 if block is not None else nan,
         structure.etas[k],
         why.removeprefix(f"{structure.name}: ") if why is not None else None,
-        caution=mechanism.own_caution() or None,
+        cautions=setting.cautions(mechanism),
+        any_friction=mechanism.friction is None and len(mechanism.bodies()) == 1,
         ratio=verification.ratio if verification is not None else None,
         verified=verification.conclusion if verification is not None else None,
         unprinted=verification is not None and verification.unprinted,

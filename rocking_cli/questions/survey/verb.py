@@ -20,6 +20,7 @@ from rocking_cli.text import one_line
 
 if TYPE_CHECKING:
     from rocking_cli.questions.survey.study import Survey, SurveyEntry
+    from rocking_cli.studies.provenance import TitleBlock
     from rocking_cli.views.sheet.language import Language
 
 MIN_ROWS_FOR_PROCESSES, MIN_ROWS_FOR_PROCESSES_WITH_MOTION = 10_000, 1_000  # rows from which processes pay
@@ -57,6 +58,7 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
     from rocking_cli.plotting.style import in_language
     from rocking_cli.questions.survey.study import survey as study
     from rocking_cli.questions.survey.view import blocks, columns, texts_in, title, view
+    from rocking_cli.views.cautions import cautions_of
 
     where = None if asked.site is None else site_of(asked.site)
     say = texts_in(language := language_of(asked.language, where, watch))
@@ -77,7 +79,7 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
     with watch.progress(len(entries), "structures") as advance:
         result = study(
             entries, shaken, asked.signs, site=where, around=asked.neighbourhood(Neighbourhood.count if shaken else 0),
-            bounded=asked.neighbours is None, opening=asked.opening, threads=asked.jobs,
+            bounded=asked.neighbours is None, opening=asked.opening, cautions=cautions_of, threads=asked.jobs,
             processes=processes if asked.in_processes else None, progress=_timed(advance, len(entries), watch),
         )  # fmt: skip
     _tell_bad(result, "structures" if sheet is None else sheet.file, watch)
@@ -87,7 +89,8 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
         remarks = list(dict.fromkeys(remark for each in result.rows for remark in each.remarks))
         _tell_first(watch.note, remarks, "further remarks on how fields were read: {:,}")
     if asked.page is not None:
-        _write_page(asked.page, result, "structures" if sheet is None else Path(sheet.file).name, say, watch)
+        title_block = asked.title(asked.origin or "rocking_cli.survey(...)", language)
+        _write_page(asked.page, result, "structures" if sheet is None else Path(sheet.file).name, title_block, say, watch)
     if asked.map is not None:
         _write_map(asked.map, result, title(result), say, watch)
     if writer is not None:
@@ -184,12 +187,13 @@ def _write_map(place: Path, found: Survey, title: str, say: Language, watch: Wat
     watch.note(f"wrote {place}")
 
 
-def _write_page(place: Path, found: Survey, table: str, say: Language, watch: Watcher) -> None:
+def _write_page(place: Path, found: Survey, table: str, title: TitleBlock, say: Language, watch: Watcher) -> None:
     from rocking_cli import __version__
     from rocking_cli.io.files import write_whole
     from rocking_cli.questions.survey.pages import render
 
-    written = say("Written on {day} with rocking-cli {version}.", day=say.today(), version=__version__)
-    page = render(found, table, [written], say).encode()
+    about = [f"{say(name.capitalize())}: {text}." for name, text in title.known.items()]
+    about.append(say("Written on {day} with rocking-cli {version}.", day=title.date, version=__version__))
+    page = render(found, table, [*about, f"{say('Command')}: {title.command}"], say, title.logo).encode()
     write_whole(place, lambda stream: stream.write(page))
     watch.note(f"wrote {place} ({len(page) / 1e6:.2g} MB)")

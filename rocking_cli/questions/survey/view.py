@@ -9,13 +9,15 @@ from functools import partial
 from math import isnan
 from typing import Any, NamedTuple
 
+from rocking_cli.core.registry import Registry
 from rocking_cli.errors import named
 from rocking_cli.io.spreadsheet import Spreadsheet
 from rocking_cli.io.tables import Columns
 from rocking_cli.names import digits_apart, percent
-from rocking_cli.questions.survey.study import FailedEntry, Survey, Surveyed
+from rocking_cli.questions.survey.study import FailedEntry, Shaken, Survey, Surveyed
 from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.text import cut, one_line
+from rocking_cli.views.cautions import in_language
 from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, rounded, table_of
 from rocking_cli.views.conclusion import concluded_in_words, limits_in_words, uncounted_ties
 from rocking_cli.views.neighbours import deviations
@@ -24,6 +26,8 @@ from rocking_cli.views.view import Aside, Table, View, number
 
 MAX_NAME_LENGTH = 30  # characters, in the table
 MAX_CAUTIONED = 3  # structures whose cautions are printed
+SATURATED = 0.99  # share of neighbours from which ranks hardly differ
+PLAIN_FRICTION = 0.3  # coefficient of friction that many floors are taken to have
 ROWS_PER_BLOCK = 10_000  # rows of a file that are written at once
 RANKED = {
     "lambda": "by ground acceleration at uplift",
@@ -55,8 +59,15 @@ def _not_counted(row: RankedStructure) -> str | None:
 def caution_of(row: RankedStructure, say: Language = ENGLISH) -> str | None:
     """Return the cautions on a structure, and what limits its verification, as one text; None without any."""
     limits = limits_in_words(row.found.verified, say) if row.found.verified is not None else []
-    caution = say.recognised("caution", row.found.caution or "")
-    return " ".join([caution] * (caution not in " ".join(limits)) + limits) or None
+    known, mechanism = " ".join(limits), row.found.mechanism
+    of_all = Registry()[mechanism].caution if row.found.cautions and say.key != ENGLISH.key else ""
+    cautions = [in_language(mechanism, of_all, each, say) for each in row.found.cautions]
+    return " ".join([each for each in cautions if each not in known] + limits) or None
+
+
+def _marked(row: RankedStructure, say: Language = ENGLISH) -> str | None:
+    """Return what is doubtful of the size of a structure, and the cautions on it, as one text; None without any."""
+    return " ".join(filter(None, [row.found.doubt, caution_of(row, say)])) or None
 
 
 def _share(row: RankedStructure) -> str | None:
@@ -228,8 +239,8 @@ def table(found: Survey, top: int, longest: int | None = MAX_NAME_LENGTH, say: L
         if column.key not in hidden
         and (column.key not in {*RARE, *found.units} or any(column.of(row) not in (None, 0) for row in rows))
     ]  # fmt: skip
-    if any(caution_of(row) is not None for row in rows):
-        mark = partial(caution_of, say=say) if longest is None else lambda row: caution_of(row) and "yes"
+    if any(_marked(row) is not None for row in rows):
+        mark = partial(_marked, say=say) if longest is None else lambda row: _marked(row) and "yes"
         shown.append(only_shown("caution", mark, text=True))
     whole = table_of(title(found), shown, rows[:top])
     if longest is None:
@@ -256,11 +267,18 @@ def counts(found: Survey) -> list[str]:
         lines.append(" ".join(_of_site(rows)))
     if found.motions:
         lines.append(_of_motions(found))
-    if not lines and len(rows) > 1:
-        first, last = rows[0], rows[-1]
+    if turned := [each for each in rows if each.side is not None]:
         lines.append(
+            f"{_named(turned)}: ranked about the depth, the weaker side of the base. `rocking respond` takes the "
+            f"width: exchange the two there. If a structure cannot rock about its depth, give its column "
+            f"{named('plane')} the word width."
+        )
+    if found.by == "lambda" and len(rows) > 1:
+        first, last = rows[0], rows[-1]
+        lines.insert(
+            0,
             f"Of {_structures(len(rows))}, {_named([first])} uplifts at the lowest ground acceleration, "
-            f"{number(first.uplift, 3)} g, and {_named([last])} at the highest, {number(last.uplift, 3)} g."
+            f"{number(first.uplift, 3)} g, and {_named([last])} at the highest, {number(last.uplift, 3)} g.",
         )
     return lines
 
@@ -329,16 +347,14 @@ def sentences(found: Survey, top: int | None = None, say: Language = ENGLISH) ->
     ranked = RANKED[found.by].format("neighbouring motions" if found.around.count else "motions")
     lines = [f"Showing {top} of {many:,}."] if top is not None and many > top else []
     lines.append(Aside(f"Ranked {ranked}."))
-    if turned := [each for each in rows if each.side is not None]:
-        lines.append(
-            f"{_named(turned)}: ranked about the depth, the weaker side of the base. If a structure cannot rock about "
-            f"it, give its column {named('plane')} the word width."
-        )
-    if found.motions:
+    if found.shaken is not None:
+        lines.append(" ".join(_of_shaken(found, found.shaken)))
         lines.append(Aside(
             "Time histories are by the nonlinear model. The peak is the largest rotation over the critical rotation "
             "among the motions that do not overturn the structure."
         ))  # fmt: skip
+        if any(each.under is not None and each.under.peak_ratio > 1 for each in rows):
+            lines.append("A peak above 1 passed the critical rotation, and the motion brought the structure back.")
         lines += _of_neighbours(found)
         lines += _not_known(rows)
     cautions = [(each.name, caution_of(RankedStructure(0, each), say)) for each in rows]
@@ -346,6 +362,13 @@ def sentences(found: Survey, top: int | None = None, say: Language = ENGLISH) ->
     lines += [say("Caution: {text}", text=f"{name}: {caution}") for name, caution in cautioned[:MAX_CAUTIONED]]
     if len(cautioned) > MAX_CAUTIONED:
         lines.append(f"{len(cautioned) - MAX_CAUTIONED:,} more structures have such a caution: JSON lists them all.")
+    if unsized := [each for each in rows if each.width_alone]:
+        lines.append(f"{_named(unsized)}: depth not given, so only the width was examined.")
+    if held := [each for each in rows if each.any_friction and each.lambda_ > PLAIN_FRICTION]:
+        lines.append(
+            f"{_named(held)}: without {named('friction')} nothing slides, but to rock they need more than "
+            f"{PLAIN_FRICTION:g}, up to {number(max(each.lambda_ for each in held), 3)}: on a smoother floor they slide."
+        )
     if any(each.unprinted for each in rows):
         lines.append(
             "Caution: formulas of the code have not been checked against the printed code yet: have them checked "
@@ -359,6 +382,23 @@ def sentences(found: Survey, top: int | None = None, say: Language = ENGLISH) ->
     return lines
 
 
+def _of_shaken(found: Survey, shaken: Shaken) -> Iterator[str]:
+    """Yield how strong the motions are, in which polarity they are, and that one record is one sample."""
+    yield f"{_peaks('PGA of the ground', shaken.ground)}."
+    if shaken.floor:
+        yield f"The structures stand on a floor: {_peaks('PGA of the floor', shaken.floor)}."
+    if len(shaken.polarities) == 1:
+        way = "as given" if shaken.polarities[0] > 0 else "reversed"
+        yield f"Motions {way} only: give {named('polarity')} both, as the other may be worse."
+    if len(found.motions) == 1 and found.around.count:
+        yield "One record is one sample: use several."
+
+
+def _peaks(what: str, peaks: Sequence[float]) -> str:
+    low, high = number(min(peaks), 3), number(max(peaks), 3)
+    return f"{what} {low} g" if low == high else f"{what} from {low} to {high} g"
+
+
 def _of_neighbours(found: Survey) -> Iterator[str]:
     """Yield what the shares are shares of, and why there are fewer neighbours than usual, or none."""
     fewer = f"more would take over a minute for this table: give {named('neighbours')} to fix their number"
@@ -367,6 +407,12 @@ def _of_neighbours(found: Survey) -> Iterator[str]:
         yield f"One time history is one sample: `rocking margin` shows how close the result is.{why}"
         return
     of = f"{found.around.count} neighbours ({deviations(found.around)})"
+    most = [each for each in found.rows if each.under and each.under.share and each.under.share.highest >= SATURATED]
+    if len(most) > 1:
+        yield (
+            f"{_structures(len(most))} overturn with {percent(SATURATED)} or more of their neighbours, which hardly "
+            "ranks them: use a weaker motion."
+        )
     mean = " of each motion, the mean over the motions" if len(found.motions) > 1 else ""
     share = f"The share is that of {of}{mean}"
     yield f"{share}; {fewer}." if found.reduced else Aside(f"{share}.")
