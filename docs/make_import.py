@@ -1,7 +1,6 @@
-"""Draw what docs/import.md starts from: a DXF drawing as a CAD program shows it; write the mesh of an obelisk.
+"""Draw what docs/import.md starts from: a DXF drawing as a CAD program shows it.
 
 python docs/make_import.py drawing FILE.dxf --plot PICTURE
-python docs/make_import.py obelisk FILE.obj
 """
 
 from __future__ import annotations
@@ -28,10 +27,6 @@ LOOKS: dict[Role, dict[str, Any]] = {
 }
 """The look of what is drawn on the layers of each role."""
 SAGITTA = 1.0  # largest distance of the sides of a curve from it [units of the drawing]
-# The obelisk [m]: height of each of its sections, and half its width there. Its foot is worn at the edges.
-SECTIONS = ((0.0, 0.42), (0.0015, 0.46), (0.008, 0.5), (0.4, 0.5), (0.4, 0.3), (3.0, 0.2), (3.3, 0.02))
-NARROW = 0.8  # depth over width
-LEAN = 0.1 + 0.04j  # from the middle of the foot to below the top [m]
 
 
 @click.group()
@@ -85,24 +80,6 @@ def parts(entities: Iterable[Any], around: str = "0") -> Iterator[tuple[Any, str
             yield from parts([*getattr(entity, "attribs", ()), *entity.virtual_entities()], layer)
         elif entity.dxftype() not in ("ATTDEF", "SOLID") and layer != "Defpoints":
             yield entity, layer
-
-
-@main.command()
-@click.argument("file")
-def obelisk(file: str) -> None:
-    """Write an obelisk that leans a little as a mesh: a square at each height, and the sides between them."""
-    top, lines = SECTIONS[-1][0], []
-    for z, half in SECTIONS:
-        middle = LEAN * z / top
-        lines += [
-            f"v {middle.real + x * half:.6g} {middle.imag + y * NARROW * half:.6g} {z:g}"
-            for x, y in ((-1, -1), (1, -1), (1, 1), (-1, 1))
-        ]
-    last = 4 * len(SECTIONS)
-    lines += ["f 4 3 2 1", f"f {last - 3} {last - 2} {last - 1} {last}"]
-    for k in range(1, last - 4, 4):
-        lines += [f"f {k + j} {k + i} {k + i + 4} {k + j + 4}" for j, i in ((0, 1), (1, 2), (2, 3), (3, 0))]
-    Path(file).write_text("\n".join([*lines, ""]), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -269,8 +269,8 @@ def counts(found: Survey) -> list[str]:
         lines.append(_of_motions(found))
     if turned := [each for each in rows if each.side is not None]:
         lines.append(
-            f"{_named(turned)}: ranked about the depth, the weaker side of the base. `rocking respond` takes the "
-            f"width: exchange the two there. If a structure cannot rock about its depth, give its column "
+            f"{_named(turned)}: ranked about the depth, the weaker side of the base. Exchange the two for "
+            f"`rocking respond`, which takes the width. If a structure cannot rock about its depth, give its column "
             f"{named('plane')} the word width."
         )
     if found.by == "lambda" and len(rows) > 1:
@@ -349,6 +349,7 @@ def sentences(found: Survey, top: int | None = None, say: Language = ENGLISH) ->
     lines.append(Aside(f"Ranked {ranked}."))
     if found.shaken is not None:
         lines.append(" ".join(_of_shaken(found, found.shaken)))
+    if found.motions:
         lines.append(Aside(
             "Time histories are by the nonlinear model. The peak is the largest rotation over the critical rotation "
             "among the motions that do not overturn the structure."

@@ -170,6 +170,24 @@ class TestContent:
         far = run_json("report", *FEW, BLOCK, "--pulse", f"sine:{near / 1.5:.6g}g:1s")
         assert "(close)" not in far["motions"][0]["headline"] and "close" not in far["answer"]
 
+    def test_a_decisive_share_of_overturning_is_not_called_close(self):
+        levels = run_json("report", *FEW, BLOCK, "--pulse", "sine:0.5g:1s")["motions"][0]["margin"]["levels"]
+        beyond = 0.5 * levels["90"]["last_below"] * 1.15
+        found = run_json("report", *FEW, BLOCK, "--pulse", f"sine:{beyond:.6g}g:1s")
+        assert found["motions"][0]["headline"].startswith("overturns") and found["conclusion"]["share"]["lowest"] == 1
+        assert "close" not in found["motions"][0]["headline"] and "is close to" not in found["answer"]
+
+    def test_peaks_of_ground_and_floor_are_named(self, tmp_path):
+        floor = ("--record", ACCEL, "--floor", "T1=0.4,z/H=1,n=3", "--polarity", "1")
+        run("report", *FEW, BLOCK, *floor, "--out", tmp_path / "r.html")
+        words = read(tmp_path / "r.html").words
+        assert "(PGA of the ground 0.55 g)" in words and "this motion, on the floor, reaches" in words
+        assert "A floor acceleration of 0.25 g" in words and "| PGA" not in words
+        assert "PGA of the ground" in run("margin", BLOCK, *FEW, *floor).stdout.replace("\n", " ") + words
+        run("animate", BLOCK, *FEW, *floor, "--out", tmp_path / "a.html")
+        page = (tmp_path / "a.html").read_text(encoding="utf-8")
+        assert "PGA of the ground 0.55 g, of the floor" in page and '"floor acceleration [g]"' in page
+
     def test_doubts_of_a_record_and_of_the_structure_are_in_it(self, tmp_path):
         t = np.arange(200) * 0.02
         record = tmp_path / "odd.csv"

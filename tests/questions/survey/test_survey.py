@@ -302,6 +302,27 @@ class TestRanking:
         said = " ".join(run("survey", "t.csv").stdout.split())
         assert "front: ranked about the depth, the weaker side of the base." in said
 
+    def test_cautions_and_what_a_rank_rests_on_are_said(self):
+        rows = "block,squat,0.6,0.6,0.8\nblock,slim,0.1,0.1,1\nblock,thin,0.09,,1\nblock,huge,300,300,1200\n"
+        table(f"mechanism,name,width,depth,height\n{rows}")
+        shaken = ("survey", "t.csv", "--pulse", "sine:1g:1s", "--floor", "T1=0.4,z/H=1,n=3", "--neighbours", "20")
+        by_name = {row["name"]: row for row in found(*shaken)["rows"]}
+        assert "It is stocky" in by_name["squat"]["caution"] and by_name["slim"]["caution"] is None
+        run(*shaken, "--page", "p.html", "--project", "Hall 3", "--out", "o.csv")
+        assert "It is stocky" in Path("o.csv").read_text(encoding="utf-8-sig")
+        page = unescape(Path("p.html").read_text(encoding="utf-8"))
+        said = " ".join(run(*shaken).stdout.split())
+        for each in (
+            "PGA of the ground 1 g. The structures stand on a floor: PGA of the floor", "Motions as given only",
+            "One record is one sample", "2 structures overturn with 99 % or more of their neighbours",
+            "Caution: squat: It is stocky", "thin: depth not given, so only the width was examined.",
+            "nothing slides, but to rock they need more than 0.3, up to 0.75",
+        ):  # fmt: skip
+            assert each in said and each in page.replace("<p>", " "), each
+        assert "did you mean 300 mm?" in page and "Project: Hall 3." in page and "Command: rocking survey" in page
+        both = " ".join(run(*shaken, "--polarity", "both").stdout.split())
+        assert "as given only" not in both
+
     @pytest.mark.parametrize(("aside", "direction"), [(-1e-10, "positive"), (-1e-6, "negative")])
     def test_directions_that_differ_by_rounding_are_alike_and_the_first_is_shown(self, aside, direction):
         load = {"name": "speck", "mass": 100.0, "at": [aside, 2.0]}
