@@ -345,8 +345,8 @@ class Structure:
             known_path = (*known_path, part)
         kinds = types_at(cls, place)
         if not kinds & {float, int} or (isinstance(place[-1], str) and is_plural(cls, place)):
-            numeric = [name for name in fields_at(cls, ()) if name in self._data and types_at(cls, (name,)) & {float, int}]
-            numeric = [name for name in numeric if not is_plural(cls, (name,))]
+            given = [name for name in fields_at(cls, ()) if name in self._data and not is_plural(cls, (name,))]
+            numeric = [name for name in given if types_at(cls, (name,)) & {float, int}]
             hint = f"a number of this file can be varied, such as {', '.join(numeric)}" if numeric else None
             raise InputError(Problem("is not a numeric field, so it cannot be varied", field=field, hint=hint))
         return place

@@ -183,7 +183,7 @@ def doubts(found: Design, excitation: Excitation) -> list[str]:
     sentences = [f"{each} Next: {NEXT_STEPS[NextStep.YIELD_FORCE]}." for each in not_counted(found.taken_otherwise)]
     count, there = len(found.values), found.metric[~np.isnan(found.metric)]
     same = there.size > 1 and np.allclose(there, there[0], rtol=TREND_TOLERANCE, atol=0.0)
-    if same and (not found.aim.metric.shaken or 0 < there[0] < inf and there[0] != 1):  # not where shares end
+    if same and (not found.aim.metric.shaken or (0 < there[0] < inf and there[0] != 1)):  # not where shares end
         what = f"{found.aim.metric.name} is the same at every value tried"
         sentences.append(f"{what}: {found.field} has no effect on it.")
     if not found.monotone and np.isfinite(found.metric).any():

@@ -209,7 +209,7 @@ def _reached(found: Margin, shares: NDArray[np.float64], does: str) -> list[str]
             f"{does.removesuffix(',')}."
         ]
     (level, first), *others = reached
-    parts = [f"{percent(level)} of the neighbouring motions first {does} at a factor of {at(first, f'{found.of_pga} ')}"]
+    parts = [f"{percent(level)} of the neighbouring motions first {does} at a factor of {at(first, found.of_pga)}"]
     parts += [f"{percent(level)} at {at(first)}" for level, first in others]
     parts += [f"{percent(level)} at none up to {high:.2g}" for level in SHARE_LEVELS[len(reached) :]]
     sentence = f"At least {', '.join(parts[:-1])} and {parts[-1]}"
@@ -229,4 +229,4 @@ def _reached(found: Margin, shares: NDArray[np.float64], does: str) -> list[str]
 
 
 def _at(pga: float, factor: float, what: str = "") -> str:
-    return f"{factor:.3g} ({what}{factor * pga:.3g} g)"
+    return f"{factor:.3g} ({f'{what} ' * bool(what)}{factor * pga:.3g} g)"

@@ -91,8 +91,8 @@ class MotionResult(Response):
     @property
     def decisive(self) -> bool:
         """Whether nearly all neighbours have the same outcome."""
-        near = self.neighbours[self.polarity]
-        return near.overturned >= SURE_SHARE or near.at_most <= 1 - SURE_SHARE
+        around = self.neighbours[self.polarity]
+        return around.overturned >= SURE_SHARE or around.at_most <= 1 - SURE_SHARE
 
     @property
     def close(self) -> bool:

@@ -236,20 +236,6 @@ ORDERS: Mapping[str, Order] = {"lambda": _by_lambda, "response": _by_response, "
 """Sort keys of rankings: the structure with the smaller key is the more vulnerable."""
 
 
-class Shaken(NamedTuple):
-    """How ground motions shake the structures: polarities, peak accelerations of ground and floor [standard gravity]."""
-
-    polarities: Sequence[int]
-    ground: Sequence[float]
-    floor: Sequence[float]  # empty if the structures stand on the ground
-
-    @classmethod
-    def by(cls, motions: Sequence[GroundMotion], polarities: Sequence[int]) -> Shaken:
-        """Return how motions shake structures."""
-        on_floor = [each.pga_g for each in motions if each.ground is not None]
-        return cls(polarities, [each.of_ground.pga_g for each in motions], on_floor)
-
-
 @short_repr
 @dataclass(frozen=True)
 class Survey:
@@ -265,8 +251,10 @@ class Survey:
         The names of the ground motions.
     around : Neighbourhood
         The neighbours of each motion; a count of 0 for none.
-    shaken : Shaken, optional
-        How the ground motions shake the structures, if there are any.
+    polarities : sequence of int
+        The polarities of the motions; of both, the worse governs.
+    pga, floor_pga : sequence of float
+        Peak accelerations of ground and floor [standard gravity]; the second is empty without a floor.
     reduced : bool
         Whether there are fewer neighbours than usual, so that the survey takes no more than about a minute.
     by : str
@@ -285,7 +273,9 @@ class Survey:
     sheet: Spreadsheet | None = None
     around: Neighbourhood = NO_NEIGHBOURS
     reduced: bool = False
-    shaken: Shaken | None = None
+    polarities: Sequence[int] = ()
+    pga: Sequence[float] = ()
+    floor_pga: Sequence[float] = ()
 
     def cells(self, found: Surveyed) -> Sequence[str]:
         """Return the cells of a structure in its table; none without a table."""
@@ -365,8 +355,9 @@ def survey(
     bad, names = [each for each in results if isinstance(each, FailedEntry)], [each.name for each in motions]
     numbers = code_of(site).row_numbers if site is not None else {}
     units = {name: number.unit for name, number in numbers.items()}
-    sheet, shaken = getattr(entries, "sheet", None), Shaken.by(motions, polarities) if motions else None
-    return Survey(good, bad, names, by, units, sheet, around, reduced, shaken)
+    peaks = [each.of_ground.pga_g for each in motions], [each.pga_g for each in motions if each.ground is not None]
+    sheet = getattr(entries, "sheet", None)
+    return Survey(good, bad, names, by, units, sheet, around, reduced, polarities, *peaks)
 
 
 class Setting(NamedTuple):

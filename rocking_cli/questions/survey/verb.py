@@ -89,8 +89,9 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
         remarks = list(dict.fromkeys(remark for each in result.rows for remark in each.remarks))
         _tell_first(watch.note, remarks, "further remarks on how fields were read: {:,}")
     if asked.page is not None:
-        title_block = asked.title(asked.origin or "rocking_cli.survey(...)", language)
-        _write_page(asked.page, result, "structures" if sheet is None else Path(sheet.file).name, title_block, say, watch)
+        source = "structures" if sheet is None else Path(sheet.file).name
+        heading = asked.title(asked.origin or "rocking_cli.survey(...)", language)
+        _write_page(asked.page, result, source, heading, say, watch)
     if asked.map is not None:
         _write_map(asked.map, result, title(result), say, watch)
     if writer is not None:

@@ -14,7 +14,7 @@ from rocking_cli.errors import named
 from rocking_cli.io.spreadsheet import Spreadsheet
 from rocking_cli.io.tables import Columns
 from rocking_cli.names import digits_apart, percent
-from rocking_cli.questions.survey.study import FailedEntry, Shaken, Survey, Surveyed
+from rocking_cli.questions.survey.study import FailedEntry, Survey, Surveyed
 from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.text import cut, one_line
 from rocking_cli.views.cautions import in_language
@@ -347,8 +347,8 @@ def sentences(found: Survey, top: int | None = None, say: Language = ENGLISH) ->
     ranked = RANKED[found.by].format("neighbouring motions" if found.around.count else "motions")
     lines = [f"Showing {top} of {many:,}."] if top is not None and many > top else []
     lines.append(Aside(f"Ranked {ranked}."))
-    if found.shaken is not None:
-        lines.append(" ".join(_of_shaken(found, found.shaken)))
+    if found.pga:
+        lines.append(" ".join(_of_peaks(found)))
     if found.motions:
         lines.append(Aside(
             "Time histories are by the nonlinear model. The peak is the largest rotation over the critical rotation "
@@ -383,13 +383,13 @@ def sentences(found: Survey, top: int | None = None, say: Language = ENGLISH) ->
     return lines
 
 
-def _of_shaken(found: Survey, shaken: Shaken) -> Iterator[str]:
+def _of_peaks(found: Survey) -> Iterator[str]:
     """Yield how strong the motions are, in which polarity they are, and that one record is one sample."""
-    yield f"{_peaks('PGA of the ground', shaken.ground)}."
-    if shaken.floor:
-        yield f"The structures stand on a floor: {_peaks('PGA of the floor', shaken.floor)}."
-    if len(shaken.polarities) == 1:
-        way = "as given" if shaken.polarities[0] > 0 else "reversed"
+    yield f"{_peaks('PGA of the ground', found.pga)}."
+    if found.floor_pga:
+        yield f"The structures stand on a floor: {_peaks('PGA of the floor', found.floor_pga)}."
+    if len(found.polarities) == 1:
+        way = "as given" if found.polarities[0] > 0 else "reversed"
         yield f"Motions {way} only: give {named('polarity')} both, as the other may be worse."
     if len(found.motions) == 1 and found.around.count:
         yield "One record is one sample: use several."

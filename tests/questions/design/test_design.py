@@ -114,25 +114,26 @@ class TestScan:
         assert isclose(found.value, 0.62, rel_tol=1e-9) and found.monotone
 
 
-class TestWeakerSide:
-    BLOCK = {"width": 0.45, "depth": 0.55, "height": 2.4}
+DEEP = {"width": 0.45, "depth": 0.55, "height": 2.4}
 
+
+class TestWeakerSide:
     def test_a_wider_base_helps_up_to_the_depth(self):
-        found = rk.design(rk.Block(**self.BLOCK), "width=0.3m:1m", "lambda >= 0.24")
+        found = rk.design(rk.Block(**DEEP), "width=0.3m:1m", "lambda >= 0.24")
         assert found.metric == pytest.approx(np.minimum(found.values, 0.55) / 2.4) and not found.holds
         assert found.depth_governs == [pytest.approx((0.55, 1.0))]
         assert "From 0.55 m on, the depth is the weaker side of the base and governs" in found.to_dict()["verdict"]
-        held = rk.design(rk.Block(**self.BLOCK, plane="width"), "width=0.3m:1m", "lambda >= 0.24")
+        held = rk.design(rk.Block(**DEEP, plane="width"), "width=0.3m:1m", "lambda >= 0.24")
         assert held.value == pytest.approx(0.24 * 2.4) and not held.depth_governs
 
     def test_the_depth_has_an_effect_while_it_is_the_smaller(self):
-        found = rk.design(rk.Block(**self.BLOCK), "depth=0.3m:1m", "lambda >= 0.15")
+        found = rk.design(rk.Block(**DEEP), "depth=0.3m:1m", "lambda >= 0.15")
         assert found.value == pytest.approx(0.36) and found.depth_governs == [pytest.approx((0.3, 0.45))]
         assert "governs" not in rk.design(rk.Block(width=0.5, height=2.0), "width=0.2m:1m", "lambda > 0").sentences[0]
 
     def test_what_has_no_effect_on_shares_is_said(self):
-        deep = {"until": "overturned < 5%", "motions": "sine:0.3g:0.8s", "neighbours": 20, "points": 3}
-        said = " ".join(rk.design(rk.Block(**self.BLOCK), "depth=0.6m:1m", **deep).sentences)
+        shaken = {"until": "overturned < 5%", "motions": "sine:0.3g:0.8s", "neighbours": 20, "points": 3}
+        said = " ".join(rk.design(rk.Block(**DEEP), "depth=0.6m:1m", **shaken).sentences)
         assert "overturned is the same at every value tried: depth has no effect on it." in said
         assert "Motions as given only: give `polarity` both" in said
 
