@@ -77,6 +77,8 @@ class DesignAsked(OfStructure, Sought, MaybeUnderMotions, Around, OfJoints, With
     state or of a method are those of `rocking verify` by the Italian code. Of each, the smaller of both directions
     governs.
 
+    A block that is alone, and less deep than wide, is judged as it rocks about its depth, unless it has plane: width.
+
     If the field varies the force of a tie, the answer names bars of steel that give it.
 
     First, the range is scanned at some points. If the metric is monotonic over it, the single threshold value is

@@ -44,11 +44,11 @@ class SurveyAsked(MaybeUnderMotions, OfJoints, Around, InLanguage, Identity, Wit
     Without ground motions, structures are ranked by their uplift acceleration. With ground motions, they are ranked by
     the share of neighbouring motions that overturn them and then by their largest peak rotation, both from the
     nonlinear model; a motion whose outcome is unknown, because a joint opens or slides that the model keeps closed,
-    counts as overturning. Of two polarities, the worse governs. At a site, each is verified by its code and ranked by
-    its ratio of capacity to demand.
+    counts as overturning. Motions act as given, unless both polarities are requested, of which the worse governs. At a
+    site, each is verified by its code and ranked by its ratio of capacity to demand.
 
     A block that is alone, and less deep than wide, is ranked as it rocks about its depth, unless its column plane says
-    width.
+    width. Without a depth, only its width is examined.
 
     A row that cannot be used is reported with its line number and skipped, and the exit code is 5.
 
