@@ -38,7 +38,7 @@ class AsymmetricFrame(Mechanism):
     title: ClassVar[str] = "beam on two columns of different height"
     suits: ClassVar[str] = "bridge or portal on columns of different height"
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Eqs. 26-38, with 27, 32, 33 and 37 corrected"
-    verified: ClassVar[str] = "Eqs. 32-34 and 38 written out, 32 and 33 corrected; the symmetric frame for equal columns"
+    verified: ClassVar[str] = "Eqs. 32-34 and 38 written out (32, 33 corrected); the symmetric frame for equal columns"
 
     starter: ClassVar[tuple[str, ...]] = ("density", "depth")
 

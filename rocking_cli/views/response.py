@@ -203,7 +203,7 @@ KNOWN: tuple[Column[OneOutcome], ...] = (
     Column("opening", of("opening"),
            words="Largest opening or slip of a joint over D_cr, of the whole history, beyond `known_to` too"),
 )  # fmt: skip
-ENDING: Column[OneOutcome] = Column(
+ENDING: Column[Any] = Column(
     "outcome", ending,
     words="How the motion ended: at_rest (it rocked or not, see `peak_ratio`), still_rocking, overturned, falls_off "
     "(an edge, as free blocks) or unknown",

@@ -194,7 +194,9 @@ def test_json_has_the_keys_of_every_command_and_meanings_where_they_are_declared
     of_a_run = respond.partition("\n  - `nonlinear`\n")[2].partition("\n- ")[0]
     for name in ("known_to", "known_to_reason", "opening", "outcome", "peak_lower_bound", "unknown"):
         assert re.search(rf"^    - `{name}`: \S", of_a_run, re.M), name
-    assert "  - `joint`: The joint at which the response" in respond and "  - `sensitive`: Whether under 90 %" in respond
+    assert (
+        "  - `joint`: The joint at which the response" in respond and "  - `sensitive`: Whether under 90 %" in respond
+    )
     last = page.partition("\n## Values of `next`\n")[2]
     assert re.findall(r"^- `(\w+)`: \S", last, re.M) == [*NextStep]
 

@@ -15,6 +15,7 @@ from textwrap import wrap
 import numpy as np
 
 from rocking_cli.arrays import Integers, Reals
+from rocking_cli.errors import named
 from rocking_cli.names import UNKNOWN, percent
 from rocking_cli.processing.intensity import RunMeasure, all_measures, parse_measure
 from rocking_cli.questions.fragility.assess import Fragility, counted, curves
@@ -380,7 +381,9 @@ def judge(ranking: Ranking) -> list[str]:
     )
     sentences = [first]
     if ranking.equal:
-        others = [f"{each.measure} ({each.efficiency:.2g})" for each in ranking.measures if each.measure in ranking.equal]
+        others = [
+            f"{each.measure} ({each.efficiency:.2g})" for each in ranking.measures if each.measure in ranking.equal
+        ]
         sentences.append(
             f"{in_short(others)} may be as efficient: leaving out each record in turn, {best.records} records do not "
             f"tell {'them' if len(others) > 1 else 'it'} apart from {best.measure} at {percent(CONFIDENCE)}."
@@ -388,8 +391,8 @@ def judge(ranking: Ranking) -> list[str]:
     if ranking.lacking:
         there = len(ranking.measures) + len(ranking.alike) + len(ranking.left_out)
         sentences.append(
-            f"Only {there} of {there + len(ranking.lacking)} measures are in the store: `rocking fragility STUDY "
-            "--rank-measures` computes all."
+            f"Only {there} of {there + len(ranking.lacking)} measures are in the store: `rocking fragility` with "
+            f"{named('rank_measures')} computes all."
         )
     return [*sentences, *left_out, _of_trends(ranking), "Other records may give another order."]
 
@@ -405,7 +408,9 @@ def _of_trends(ranking: Ranking) -> str:
     if not free:
         return f"The residuals of each have a trend with {over}: none is sufficient."
     best = free[0]
-    which = "It" if best is ranking.measures[0] and not ranking.equal else f"{best.measure}, with {best.efficiency:.2g},"
+    which = (
+        "It" if best is ranking.measures[0] and not ranking.equal else f"{best.measure}, with {best.efficiency:.2g},"
+    )
     return (
         f"{which} is the most efficient of the {len(free)} whose residuals show no trend with {over} "
         f"(p of {MIN_P_VALUE:g} or more); the absence of a detected trend does not prove that there is none."

@@ -133,8 +133,8 @@ class TestIntervals:
 def test_few_records_are_said():
     assert few_records(MIN_RELIABLE_RECORDS) == ""
     said = (
-        "intervals and bands are a rough guide: in trials with {} records{} those that should hold in 95 % of cases held "
-        "in {} to {} %"
+        "intervals and bands are a rough guide: in trials with {} records{} those that should hold in 95 % of cases "
+        "held in {} to {} %"
     )
     smaller = " (the next smaller number tried)"
     assert few_records(6) == f"only 6 distinct records: {said.format(5, smaller, *MEASURED_COVERAGE[5])}"

@@ -180,7 +180,7 @@ def test_a_measure_that_is_no_better_is_said_to_be_as_efficient(alike):
     said = judge(Ranking("block", (best, other), ("Tm", "D5-95"), {}, {}, equal=equal, lacking=("CAV",) * 3))
     text = "PGA (0.33) may be as efficient: leaving out each record in turn, 8 records do not tell it apart from PGV"
     assert (f"{text} at 95 %." in said) is alike is any(each.startswith("PGV, with 0.31") for each in said)
-    assert "Only 2 of 5 measures are in the store: `rocking fragility STUDY --rank-measures` computes all." in said
+    assert any(each.startswith("Only 2 of 5 measures are in the store: `rocking fragility` with ") for each in said)
 
 
 def ranked(name, efficiency, *p_values, slope=2.0, against=("Tm", "D5-95")):
