@@ -34,7 +34,7 @@ def _condition(name: str) -> Column[ClosedForm]:
 
 
 CLOSED: tuple[Column[ClosedForm], ...] = (
-    only_shown("closed form D0*", of("D0"), number, words="(phi/phi_cr - 1)^2 - (phi'/phi_cr)^2 after the pulse (Eq. 42)"),
+    only_shown("closed form D0*", of("D0"), number, words="(phi/phi_cr - 1)^2 - (phi'/phi_cr)^2 at its end (Eq. 42)"),
     only_shown("  max ratio", of("max_ratio"), number, words="peak of the first rebound over phi_cr (Eq. 41)"),
     only_shown("  overturns", of("overturns"), YES_NO.__getitem__, words="eta^2 (1 - D0*) >= 1"),
     *map(_condition, CONDITIONS),
