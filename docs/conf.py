@@ -79,7 +79,6 @@ MOVED = {
     "import": ["import_svg"],
     "tutorial": ["gallery", "before_and_after"],
     "architecture": ["extending", "names", "kernels"],
-    "how_far_to_trust_it": ["scoring"],
     "reference/commands": ["cli"],
 }  # fmt: skip
 redirects = {old: "../" * old.count("/") + f"{page}.html" for page, those in MOVED.items() for old in those}
@@ -95,6 +94,7 @@ ELSEWHERE = {
 WHOLE = {
     "changelog": "```{include} ../CHANGELOG.md\n```\n",
     "contributing": "```{include} ../CONTRIBUTING.md\n:relative-docs: docs/\n```\n",
+    "scoring": "```{include} ../validation/README.md\n:relative-docs: ../docs/\n```\n",
 }
 DOCS = Path(__file__).resolve().parent
 ENTRY = re.compile(r"^- \[(.+?)\]\((\S+)\.md\)", re.M)

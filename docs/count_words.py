@@ -27,7 +27,7 @@ TOPICS = {
     "Python": (2_000, "docs/python.md docs/api.md docs/api/*.md"),
     "worked structures": (2_000, "docs/examples.md"),
     "theory with free blocks": (4_000, "docs/theory.md docs/free_blocks.md"),
-    "how far to trust it": (3_500, "docs/how_far_to_trust_it.md docs/validation.md docs/scoreboard.md"),
+    "how far to trust it": (3_500, "docs/how_far_to_trust_it.md docs/validation.md docs/scor*.md"),
     "performance": (800, "docs/performance.md"),
     "plugins": (4_000, "docs/plugins.md"),
     "contributing": (2_500, "CONTRIBUTING.md docs/contributing.md docs/[acw][rho][cnar]*.md"),

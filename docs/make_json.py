@@ -14,7 +14,9 @@ from typing import Any
 from make_reference import plain
 
 import rocking_cli
+from rocking_cli.studies.conclusion import Conclusion, NextStep
 from rocking_cli.views.column import Column
+from rocking_cli.views.conclusion import NEXT_STEPS
 
 HELD = Path(__file__).resolve().parents[1] / "tests" / "json_keys.txt"  # `scripts/outputs.py keys` writes it
 INDENT = "  "
@@ -27,16 +29,19 @@ standard output. Values are in SI units and radians, accelerations of the ground
 value that does not exist is null. `given` has the options that were given. Which keys an object has depends on the
 question; a meaning is given if the code declares one.
 """
+NEXT = "## Values of `next`\n\nWhat to do next, the most useful step first:\n\n{}\n"
 Tree = dict[str, Any]
 
 
 def page() -> str:
     """Return the page."""
-    groups = [group for module in modules() for each in vars(module).values() if (group := declared(each))]
+    every = [each for module in modules() for each in vars(module).values()]
+    groups = [group for each in every if (group := declared(each)) and (not isclass(each) or len(group) > 2)]
     parts = [HEAD]
     for command, tree in sorted(held().items()):
         parts += [f"## rocking {command}", "\n".join(listed(tree, groups))]
-    return "\n\n".join(parts) + "\n"
+    steps = "\n".join(f"- `{each}`: {plain(NEXT_STEPS[each])}" for each in NextStep)
+    return "\n\n".join([*parts, NEXT.format(steps)])
 
 
 def held() -> dict[str, Tree]:
@@ -63,9 +68,16 @@ def listed(tree: Tree, groups: list[dict[str, str]], depth: int = 0) -> Iterator
 
 
 def meant(keys: frozenset[str], groups: list[dict[str, str]]) -> dict[str, str]:
-    """Return the meanings of keys that stand together, by the class or columns that declare most of them, if half."""
+    """Return the meanings of keys that stand together.
+
+    They are those of columns, or of three or more fields of a class, that are all among them, and of the class or
+    columns that declare most of them, if half.
+    """
     best = max(groups, key=lambda group: (len(keys & group.keys()), -len(group)))
-    return best if 2 * len(keys & best.keys()) >= max(len(keys), 4) else {}
+    if 2 * len(keys & best.keys()) < max(len(keys), 4):
+        best = {}
+    inside = (group for group in groups if group.keys() <= keys and all(group.values()))
+    return {key: text for group in inside for key, text in group.items()} | best
 
 
 def modules() -> Iterator[Any]:
@@ -77,10 +89,15 @@ def modules() -> Iterator[Any]:
 
 def declared(each: Any) -> dict[str, str]:
     """Return the keys and meanings that a class or columns declare."""
+    if isclass(each) and (each is Column or not each.__module__.startswith("rocking_cli")):
+        return {}
     if isclass(each):
         fields = FIELD.finditer(getdoc(each) or "")
         texts = {field["names"]: " ".join(field["meaning"].split()).rstrip(".") for field in fields}
+        texts = {names: re.sub(r"\b(None|NaN)\b", "null", text) for names, text in texts.items()}
+        texts |= {"next": "What to do next, see the end of this page"} if each is Conclusion else {}
         return {name: text if names == name else "" for names, text in texts.items() for name in names.split(", ")}
-    columns = [column for column in each if isinstance(column, Column)] if isinstance(each, tuple | list) else []
+    every = each if isinstance(each, tuple | list) else [each]
+    columns = [column for column in every if isinstance(column, Column)]
     texts = {column.key or "": (getattr(column, "meaning", "") or column.words, column.unit) for column in columns}
     return {key: " ".join([text.rstrip("."), f"[{unit}]" * bool(unit)]).strip() for key, (text, unit) in texts.items()}

@@ -125,7 +125,7 @@ def more_bodies() -> Iterator[Check]:
     wall = equivalent_block(make("wall", thickness=2 * sin(alpha), height=4 * cos(alpha))).positive
     yield Check(
         r"wall, $\alpha = 0.2$: uplift over $g$",
-        r"Eq. 22: $2 \tan \alpha$",
+        r"Eq. 21: $2 \tan \alpha$",
         2 * tan(alpha),
         wall.lambda_,
         "test_closed_forms.py",
@@ -238,7 +238,7 @@ def pulses() -> Iterator[Check]:
     for _ in range(60):
         middle = (low + up) / 2
         low, up = (low, middle) if without_impact_falls(middle) else (middle, up)
-    yield Check(r"full sine $\omega = 3$: least $a$ that overturns", r"$(s - \omega) e^{\tau_e} = a$",
+    yield Check(r"full sine $\omega = 3$: least $a$ that overturns", r"$(w - \omega) e^{\tau_e} = a$",
                 expected, up, "test_exact_pulse.py")  # fmt: skip
     low, high = 1e-3, 20.0
     for _ in range(60):  # the length of a rectangle that just overturns a block, as omega = 2 pi/(p T)

@@ -2653,8 +2653,8 @@ def respond_each(
 
     Notes
     -----
-    Every time history is identical, bit for bit, to that of `respond`: Eqs. 8 and 16 of DeJong and Dimitrakopoulos
-    (2014).
+    Time histories are those of `respond`, to the last bit, but end once they are unknown: `opening` is then the largest
+    until there, in `respond` that of the whole history. Eqs. 8 and 16 of DeJong and Dimitrakopoulos (2014).
 
     Examples
     --------

@@ -182,8 +182,8 @@ class ClosedForm:
     Parameters
     ----------
     D0 : float or None
-        Eq. 42: the energy of the free motion after the pulse, if the conditions hold; None if it does not exist or
-        overflows.
+        Eq. 42: (phi/phi_cr - 1)^2 - (dphi/dtau/phi_cr)^2, which is constant in the free motion after the pulse, of the
+        motion that Eq. 42 assumes: without impact until then. None without uplift, or if it overflows.
     max_ratio : float or None
         phi_max/phi_cr of Eq. 41, the peak of the first rebound; None if the block overturns or a condition does not
         hold.
@@ -193,8 +193,8 @@ class ClosedForm:
     conditions : dict of str to bool or None
         `uplift` (a > 1), `first_impact_after_pulse`, `no_overturning_without_impact`; None if there is no motion.
     printed_ratio : float or None
-        Value of Eq. 41 as printed, whether or not its conditions hold, to show its error; None if it is not a number
-        from 0 to 1.
+        Value of Eq. 41 as printed, whether or not its conditions hold, to show its error; None where it has no real
+        value from 0 to 1, as with eta^2 (1 - D0) >= 1.
     """
 
     D0: float | None

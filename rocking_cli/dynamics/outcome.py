@@ -60,8 +60,9 @@ class Outcome(Generic[Flags, Counts, Numbers]):
         Largest rotation over the critical rotation until `warned`, a lower bound of the peak ratio of the structure;
         NaN if `warned` is.
     opening : float
-        Largest opening or slip of a joint, over that of the farthest block at the critical rotation; NaN if the
-        joints are not known, so that nothing was checked.
+        Largest opening or slip of a joint, over that of the farthest block at the critical rotation; NaN if the joints
+        are not known, so that nothing was checked. Of a `History` it is that of all of it; of many motions, each of
+        which ends once it is unknown, that until there.
     by_blocks : bool
         Whether it was simulated with free blocks.
     slip : float

@@ -155,8 +155,10 @@ class Conclusion:
     ----------
     concluded : Concluded
         What is concluded, of all that was asked the worst.
-    limit_state, method, direction, motion, joint : str
+    limit_state, method, direction, motion : str
         What governs; empty if it does not apply, or none governs.
+    joint : str
+        The joint at which the response that governs becomes unknown; empty if none.
     polarity : int or None
         The polarity of the motion that governs, 1 or -1; None if neither does.
     ratio : float or None
@@ -167,11 +169,12 @@ class Conclusion:
     rules : sequence of str
         Keys of the rules of a code by which its limit states and the required ratio were chosen.
     peak_ratio : float or None
-        Peak over phi_cr (or the limit) of the response that governs; None if it overturns or is unknown.
+        Peak over phi_cr (or the limit) of the response that governs; None if it overturns or is unknown: its history
+        has the peak until then.
     slip : float or None
         Largest displacement of a body that only slides [m]; None for others.
     known_until : float or None
-        Time until which the response that governs is known [s]; None if all of it is known.
+        Time until which the response that governs is known, `known_to` of its history [s]; None if all of it is known.
     share : NeighbourShare or None
         How sure: the share of the neighbours of the motion that governs.
     limit_states, motions : sequence of str

@@ -185,8 +185,11 @@ class Neighbours:
     rotations: Reals = field(default_factory=lambda: np.zeros((0, 2)), compare=False, repr=False)
 
     @property
-    def sensitive(self) -> bool:
-        """Whether so many neighbours have another outcome that the outcome of the motion itself is partly chance."""
+    def sensitive(self) -> bool | None:
+        """Whether the outcome of the motion is partly chance: under 90 % share it. None if not known."""
+        unknown = self.unknown or 0.0
+        if unknown >= MIN_AGREEMENT or self.as_itself < MIN_AGREEMENT <= self.as_itself + unknown:
+            return None
         return self.as_itself < MIN_AGREEMENT
 
     @property

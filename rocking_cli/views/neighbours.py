@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 from rocking_cli import names
 from rocking_cli.names import percent
 from rocking_cli.studies.neighbours import FRACTILES, Neighbourhood, Neighbours
-from rocking_cli.views.column import Column, only_shown
+from rocking_cli.views.column import Column, data_of, of, only_shown
 
 R = TypeVar("R")
 MIN_NEIGHBOURS_OF_QUANTILES = 20  # with fewer, one or two neighbours decide the peaks of 16 and 84 %
@@ -78,25 +78,26 @@ def _shares(near: Neighbours) -> str:
     return f"{sentence}, and the outcome under {'all' if near.unknown == 1 else _number(near, near.unknown)} is unknown"
 
 
+def _quantiles(values: Sequence[float]) -> dict[str, float | None]:
+    pairs = zip(FRACTILES, values, strict=True)
+    return {f"{100 * share:.0f}": None if isinf(value) else value for share, value in pairs}
+
+
+NEAR: tuple[Column[Neighbours], ...] = (
+    Column("overturned", of("overturned"), words="Share known to overturn; at most this and `unknown` together do"),
+    Column("unknown", of("unknown"), words="Share of unknown outcome; null if the joints are not checked"),
+    Column("peak_ratio", lambda near: _quantiles(near.peak_ratio),
+           words="Quantiles of the peak over phi_cr; null at a neighbour that overturns or is unknown"),
+    Column("slides", of("slides"), words="Share that only slides"),
+    Column("slip", lambda near: _quantiles(near.slip), words="Quantiles of the slip [m]; null likewise"),
+    Column("sensitive", of("sensitive"),
+           words="Whether under 90 % share the outcome of the motion; null if unknown outcomes leave that open"),
+)  # fmt: skip
+
+
 def neighbours_data(near: Neighbours) -> dict[str, Any]:
-    """Return the outcomes of the neighbours of a motion as plain data.
-
-    A quantile of peaks or slips is null if it belongs to a neighbour that overturns or whose outcome is unknown.
-    """
-
-    def quantiles(values: Sequence[float]) -> dict[str, float | None]:
-        pairs = zip(FRACTILES, values, strict=True)
-        return {f"{100 * share:.0f}": None if isinf(value) else value for share, value in pairs}
-
-    return {
-        **asdict(near.around),
-        "overturned": near.overturned,
-        "unknown": near.unknown,
-        "peak_ratio": quantiles(near.peak_ratio),
-        "slides": near.slides,
-        "slip": quantiles(near.slip),
-        "sensitive": near.sensitive,
-    }
+    """Return the outcomes of the neighbours of a motion as plain data."""
+    return {**asdict(near.around), **data_of(NEAR, near)}
 
 
 def neighbour_columns(of: Callable[[R], Neighbours | None], *, doubtful: bool) -> list[Column[R]]:

@@ -193,12 +193,21 @@ def _is_unknown(outcome: OneOutcome) -> bool | None:
 
 
 KNOWN: tuple[Column[OneOutcome], ...] = (
-    Column("unknown", _is_unknown),
-    Column("known_to", lambda outcome: outcome.known_to if outcome.unknown else None),
-    Column("known_to_reason", lambda outcome: why_unknown(outcome) if isinstance(outcome, History) else None),
-    Column("peak_lower_bound", lambda outcome: outcome.lower_bound if outcome.unknown else None),
-    Column("opening", of("opening")),
-)
+    Column("unknown", _is_unknown, words="Whether the outcome is unknown; null if the joints are not checked"),
+    Column("known_to", lambda outcome: outcome.known_to if outcome.unknown else None, "s",
+           words="Time from which it is unknown: peaks and impacts are those until then"),
+    Column("known_to_reason", lambda outcome: why_unknown(outcome) if isinstance(outcome, History) else None,
+           words="The joint, or what else ends the result at `known_to`, in words"),
+    Column("peak_lower_bound", lambda outcome: outcome.lower_bound if outcome.unknown else None,
+           words="Peak over phi_cr until the first joint ceased to bear: the structure rocks at least so far"),
+    Column("opening", of("opening"),
+           words="Largest opening or slip of a joint over D_cr, of the whole history, beyond `known_to` too"),
+)  # fmt: skip
+ENDING: Column[Any] = Column(
+    "outcome", ending,
+    words="How the motion ended: at_rest (it rocked or not, see `peak_ratio`), still_rocking, overturned, falls_off "
+    "(an edge, as free blocks) or unknown",
+)  # fmt: skip
 
 
 def known_data(outcome: OneOutcome) -> dict[str, Any]:
@@ -233,7 +242,7 @@ def _columns(*, unknown: bool = False, slides: bool = False, over: str = "phi_cr
     until, bound = ("known until", f"lower bound of peak / {over}") if unknown else (None, None)
     return [
         Column("engine", lambda run: "blocks" if run.by_blocks else "exact"),
-        Column("outcome", ending),
+        ENDING,
         only_shown("outcome", of_structure(of("words"))),
         only_shown(until, of("known_to"), rounded(5), "s"),
         Column("peak_ratio", of("peak_ratio"), "", f"peak rotation / {over}", rounded(5)),

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from functools import cache, cached_property, partial
 from inspect import isfunction, signature
 from math import pi
+from textwrap import dedent
 from typing import ClassVar
 
 import numpy as np
@@ -37,13 +38,13 @@ from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_fields import StructureFields
 from rocking_cli.core.structure_file import load_structure, parse_structure
 from rocking_cli.dynamics.tables import tabulate
-from rocking_cli.errors import MechanismError, PluginError
+from rocking_cli.errors import DoubtWarning, MechanismError, PluginError
 from rocking_cli.plugins.errors import own_traceback
 from rocking_cli.questions.equiv.view import hung_data, hung_in_words
 from rocking_cli.testing import CHECKS, MechanismContract, contract
 from rocking_cli.testing.mechanism import verdict
 from rocking_cli.views.mechanisms import template
-from tests.conftest import EXAMPLES
+from tests.conftest import EXAMPLES, PROJECT
 
 BUILT_IN = {
     "arch", "assembly", "asymmetric_frame", "block", "cone", "curve", "linkage", "point_mass", "rigid_body",
@@ -584,3 +585,11 @@ class TestWithoutTheContract:
             made(Odd).model_copy(update={"width": 2.0})
         with pytest.raises(ValidationError):
             made(Odd).model_copy(update={"width": -2.0})
+
+
+def test_a_class_in_a_script_is_a_structure_as_the_guide_has_it(capsys):
+    guide = (PROJECT / "docs" / "plugins.md").read_text(encoding="utf-8")
+    code = guide.partition("\n## Try it in a script\n")[2].partition("\nEvery question")[0]
+    with pytest.warns(DoubtWarning, match="the mechanism slab has not been verified"):
+        exec(dedent(code), {"__name__": "guide"})
+    assert "The structure overturns clockwise." in capsys.readouterr().out

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import rocking_cli
-from rocking_cli import Registry, core
+from rocking_cli import Registry, core, names
 from rocking_cli.core import box
 from rocking_cli.core.mechanism_kinematics import Jointed, Kinematics
 from rocking_cli.core.released import released
@@ -22,6 +22,7 @@ from rocking_cli.io.starters import STARTERS, starter, template_of
 from rocking_cli.plugins.rooms import commands
 from rocking_cli.plugins.rooms import names as verbs
 from rocking_cli.processing.intensity import IntensityMeasures
+from rocking_cli.studies.conclusion import Concluded, NextStep
 from rocking_cli.testing import contract
 from rocking_cli.views.mechanisms import fields
 from tests.conftest import PROJECT
@@ -188,7 +189,25 @@ def test_json_has_the_keys_of_every_command_and_meanings_where_they_are_declared
     held = {line.split()[0] for line in made.make_json.HELD.read_text(encoding="utf-8").splitlines() if line[0] != " "}
     assert held == set(re.findall(r"^## rocking (\w+)$", page, re.M)) == set(commands())
     assert re.search(r"^    - `lambda`: Uplift acceleration\..*\[g]$", page, re.M)
-    assert re.search(r"^- `conclusion`\n(?:  .*\n)*  - `known_until`: Time until which .* \\\[s]; None", page, re.M)
+    assert re.search(r"^- `conclusion`\n(?:  .*\n)*  - `known_until`: Time until which .* \\\[s]; null", page, re.M)
+    respond = page.partition("\n## rocking respond\n")[2].partition("\n## ")[0]
+    of_a_run = respond.partition("\n  - `nonlinear`\n")[2].partition("\n- ")[0]
+    for name in ("known_to", "known_to_reason", "opening", "outcome", "peak_lower_bound", "unknown"):
+        assert re.search(rf"^    - `{name}`: \S", of_a_run, re.M), name
+    assert (
+        "  - `joint`: The joint at which the response" in respond and "  - `sensitive`: Whether under 90 %" in respond
+    )
+    last = page.partition("\n## Values of `next`\n")[2]
+    assert re.findall(r"^- `(\w+)`: \S", last, re.M) == [*NextStep]
+
+
+def test_the_outcomes_of_json_stand_beside_the_words_of_the_answer():
+    rows = re.findall(r"^\| (.+) \| `(\w+)` \| `(\w+)`", text_of("histories.md").partition("| printed |")[2], re.M)
+    words = {getattr(names, name) for name in dir(names) if name.isupper() and isinstance(getattr(names, name), str)}
+    assert {said.removesuffix(" (free blocks)") for said, _, _ in rows} <= words
+    assert {what for _, _, what in rows} <= {*Concluded} and {how for _, how, _ in rows} == {
+        "at_rest", "still_rocking", "overturned", "unknown", "falls_off"
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize("name", MECHANISMS)

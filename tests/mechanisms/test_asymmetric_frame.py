@@ -1,4 +1,4 @@
-"""The asymmetric frame against the paper's Eqs. 27-38, corrected and written out here.
+"""The asymmetric frame against the paper's Eqs. 27-38, written out here; 27, 32 and 33 corrected.
 
 In the paper's varphi (angle of AB, anticlockwise) the rocking rotation is phi = s (varphi_0 - varphi), so that with
 the scan's G_nl and J_nl: G = s G_nl, J = s J_nl, while I and B keep their sign.

@@ -271,6 +271,17 @@ class TestWords:
         around = Neighbourhood(restitution=0.05, slenderness=0.10)
         return neighbours_in_words(Neighbours(around, "nonlinear", overturned, peaks, 1.0, unknown=unknown))
 
+    @pytest.mark.parametrize(
+        ("as_itself", "unknown", "sensitive"),
+        [(0.89, 0.0, True), (0.9, 0.0, False), (0.9, 0.1, False), (0.85, 0.05, None), (0.5, 0.2, True),
+         (0.995, 0.995, None), (0.005, 0.995, None), (0.8, None, True)],
+    )  # fmt: skip
+    def test_an_outcome_is_sensitive_only_where_unknown_neighbours_do_not_leave_it_open(
+        self, as_itself, unknown, sensitive
+    ):
+        found = Neighbours(Neighbourhood(200), "nonlinear", 0.0, OPEN, as_itself, unknown=unknown)
+        assert found.sensitive is sensitive
+
     @pytest.mark.parametrize("unknown", [0.0, 0.25, None])
     def test_data_have_no_peak_where_a_neighbour_overturns_or_is_unknown(self, unknown):
         slips = np.repeat([0.02, np.inf], [5, 15])
@@ -278,7 +289,7 @@ class TestWords:
         data = neighbours_data(found)
         assert data["peak_ratio"] == {"16": 0.1, "50": None, "84": None}
         assert data["slip"] == {"16": 0.02, "50": None, "84": None}
-        assert (data["overturned"], data["unknown"], data["sensitive"]) == (0.3, unknown, True)
+        assert (data["overturned"], data["unknown"], data["sensitive"]) == (0.3, unknown, None if unknown else True)
 
     @pytest.mark.parametrize(
         ("overturned", "unknown", "peaks", "said"),

@@ -16,7 +16,7 @@ from rocking_cli.names import percent
 from rocking_cli.questions.error.study import Errors, Linearisation, errors, preferred, velocity_ratios
 from rocking_cli.views.column import Column, of, only_shown, table_of
 from rocking_cli.views.verdict import uplift_in_words
-from rocking_cli.views.view import ABSENT, Aside, View, heading
+from rocking_cli.views.view import ABSENT, View, heading
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -110,7 +110,7 @@ def view(
     title = heading(mechanism)
     titles = [title] if len(asked) == 1 else [f"{title}, {each.direction.label} direction" for each in asked]
     tables = [table_of(where, ERRORS, rows(each, mechanism.gravity)) for where, each in zip(titles, asked, strict=True)]
-    return View(data, [advice, *tables, Aside(numbers), *ranges])
+    return View(data, [advice, *tables, numbers, *ranges])
 
 
 def rows(each: Linearisation, gravity: float) -> Iterator[ErrorRow]:

@@ -220,9 +220,10 @@ def few_records(records: int) -> str:
         return ""
     trials = max([each for each in MEASURED_COVERAGE if each <= records], default=min(MEASURED_COVERAGE))
     low, high = MEASURED_COVERAGE[trials]
+    nearest = f" ({'the next smaller' if trials < records else 'the smallest'} number tried)" * (trials != records)
     return (
         f"only {records} distinct record{'s' * (records != 1)}: intervals and bands are a rough guide: in trials with "
-        f"{trials} records those that should hold in 95 % of cases held in {low} to {high} %"
+        f"{trials} records{nearest} those that should hold in 95 % of cases held in {low} to {high} %"
     )
 
 

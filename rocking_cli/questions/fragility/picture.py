@@ -98,7 +98,7 @@ def draw_curves(drawn: Mapping[str, Fragility], across: str, title: str, *, of: 
                 x = _with_steps(fine, [curve])
                 axes.plot(x, curve.probability(x), label=name, **look | {"marker": "none", "zorder": 3})
             without = {"linestyle": "none"} if curve.kind == "none" else {"marker": "none"} if curve.is_exact else {}
-            words = _unbroken(f"{words}: {_in_words(curve, unit, stop)}")
+            words = _unbroken(f"{words}: {_in_words(curve, unit)}")
             handles.append(Line2D([], [], label=words, **look | without | {"markerfacecolor": style.PAPER}))
     observed = [(each, style.distinct(k)) for k, each in enumerate(drawn.values()) if not each.curve.is_exact]
     merged = [_draw_observed(axes, *each, place, len(observed)) for place, each in enumerate(observed)]
@@ -118,8 +118,8 @@ def limit_in_picture(limit: Limit, *, math: bool) -> str:
     return rf"$\phi > {limit:g}\,\phi_{{cr}}$" if math else f"φ > {limit:g} φcr"
 
 
-def _in_words(curve: FragilityCurve, unit: str, most: float) -> str:
-    """Return the numbers of a curve, or why there is none; an intensity beyond the largest of the data has none."""
+def _in_words(curve: FragilityCurve, unit: str) -> str:
+    """Return the numbers of a curve, as the table has them, or why there is none."""
     unit = unit and f" {unit}"
     if curve.kind == "none":
         return f"no curve, {style.plain(curve.why)}"
@@ -127,15 +127,8 @@ def _in_words(curve: FragilityCurve, unit: str, most: float) -> str:
         low, high = curve.step.low, curve.step.high
         return f"{low:.4g}{unit}, exact" if curve.is_exact else f"step in the shade, {low:.3g} to {high:.3g}{unit}"
     assert curve.median is not None
-
-    def within(value: float) -> str:
-        return f"{value:.3g}" if value <= most else f"above {most:.3g}"
-
     words = "" if curve.kind == "lognormal" else f"{curve.kind}, "
-    words += f"median {within(curve.median.value)}{unit}"
-    if curve.median.low <= most:
-        upper = f" to {within(curve.median.high)}" if curve.median.value <= most else ""
-        words += f" ({'' if upper else 'from '}{curve.median.low:.3g}{upper})"
+    words += f"median {curve.median.value:.3g}{unit} ({curve.median.low:.3g} to {curve.median.high:.3g})"
     for name, spread in (("dispersion", curve.dispersion), ("scale", curve.scale)):
         if spread is not None:
             words += f", {name} {spread.value:.2g} ({spread.low:.2g} to {spread.high:.2g})"
@@ -590,7 +583,7 @@ def draw_ranking(ranking: Ranking) -> Figure:
     for place, each in zip(places, measures, strict=True):
         face = style.INK if each.sufficient else style.PAPER
         panels[0].plot(each.efficiency, place, "o", color=style.INK, markerfacecolor=face, markersize=6)
-    panels[0].set_xlim(left=0.0)
+    panels[0].set_xlim(0.0, 1.06 * measures[-1].efficiency)
     style.tidy(panels[0], r"efficiency: dispersion of $\ln(\phi/\phi_{cr})$")
     if ranking.against:
         for k, name in enumerate(ranking.against):

@@ -15,7 +15,8 @@ from textwrap import wrap
 import numpy as np
 
 from rocking_cli.arrays import Integers, Reals
-from rocking_cli.names import UNKNOWN
+from rocking_cli.errors import named
+from rocking_cli.names import UNKNOWN, percent
 from rocking_cli.processing.intensity import RunMeasure, all_measures, parse_measure
 from rocking_cli.questions.fragility.assess import Fragility, counted, curves
 from rocking_cli.questions.fragility.definition import Definition, Limit
@@ -25,6 +26,7 @@ from rocking_cli.questions.fragility.tally import samples_of
 from rocking_cli.questions.fragility.view import limit_name
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.fragility.quantities import PGA, PGV
+from rocking_cli.text import in_short
 from rocking_cli.views.column import Column, data_of, of, only_shown, rounded, table_of
 from rocking_cli.views.view import Table, View
 
@@ -35,6 +37,7 @@ LOGARITHMIC = ("magnitude",)  # quantities that are logarithms already
 MIN_RUNS = 3  # least number of runs, and of records
 RATIO_TOLERANCE = 1e-9  # variation of ln of a ratio: measures whose ratio varies less count as one
 MAX_HEADING_WIDTH = 12  # characters
+CONFIDENCE = 0.95  # with which the efficiencies of two measures differ
 
 
 @short_repr
@@ -56,7 +59,8 @@ class Ranked:
         For each quantity against which the residuals, averaged for each record, are tested: the p-value of their slope;
         NaN if it cannot be computed.
     dispersions : dict of limit state to float
-        Dispersion of the fragility curve of each limit state over the measure; NaN if it is not lognormal, or a band.
+        Dispersion of the fragility curve of each limit state over the measure; NaN if it is not lognormal, or a band,
+        or if levels scale the records and the measure does not grow with them.
     """
 
     measure: str
@@ -98,6 +102,10 @@ class Ranking:
         Measures that cannot be ranked, and why.
     unknown : int or None
         Runs of unknown outcome, which are left out; None if the joints of the structure are not known.
+    equal : tuple of str
+        Measures whose efficiency cannot be told from that of the first, by leaving out each record in turn.
+    lacking : tuple of str
+        Installed measures that the store does not have.
     """
 
     structure: str
@@ -106,6 +114,8 @@ class Ranking:
     alike: Mapping[str, str]
     left_out: Mapping[str, str]
     unknown: int | None = 0
+    equal: tuple[str, ...] = ()
+    lacking: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,6 +146,26 @@ def line(x: Reals, y: Reals) -> FittedLine | None:
     error = deviation / sqrt(squares)
     p_value = 2 * float(stdtr(free, -abs(slope) / error)) if error > 0 else 0.0
     return FittedLine(float(y.mean()) - slope * float(x.mean()), slope, deviation, p_value)
+
+
+def deviations_without(x: Reals, y: Reals, record: Integers) -> Reals:
+    """Return the deviations from a line with each record left out, shape (records,); record has numbers from 0."""
+    x, y = x - x.mean(), y - y.mean()
+    terms = (np.ones(x.size), x, y, x * x, x * y, y * y)
+    sums = np.stack([np.bincount(record, weights=each) for each in terms])
+    n, sx, sy, xx, xy, yy = sums.sum(axis=1, keepdims=True) - sums
+    with np.errstate(divide="ignore", invalid="ignore"):
+        cross, across, along = xy - sx * sy / n, xx - sx * sx / n, yy - sy * sy / n
+        return np.asarray(np.sqrt(np.maximum(along - cross * cross / across, 0) / (n - 2)))
+
+
+def is_clear(difference: float, without: Reals) -> bool:
+    """Return whether a difference is not zero by a jackknife, at 95 %; `without` has it with each record left out."""
+    from scipy.special import stdtrit
+
+    free = without.size - 1
+    error = sqrt(free / (free + 1) * float(np.sum((without - without.mean()) ** 2)))
+    return free > 0 and bool(abs(difference) > stdtrit(free, 0.5 + CONFIDENCE / 2) * error)
 
 
 def candidates(plan: Plan, definition: Definition) -> list[str]:
@@ -181,6 +211,8 @@ def rank(
         Called with the number of runs read since the last call.
     """
     names, against = candidates(plan, definition), covariates(plan)
+    fixed = definition.method != "cloud"  # levels scale the records
+    lacking = tuple(str(each) for each in all_measures() if str(each) not in names)
     widened = definition.model_copy(update={"measures": names, "bivariate": [], "hazard": None})
     rankings = []
     for structure, tally in counted(store, plan, widened, progress).items():
@@ -196,6 +228,8 @@ def rank(
         alike: dict[str, str] = {}
         left_out: dict[str, str] = {}
         logs: dict[str, Reals] = {}
+        without: dict[str, Reals] = {}
+        records, place = np.unique(one, return_inverse=True)
         for name in names:
             x = plan.intensities(name, sample, record, level, factors)
             there = x > 0
@@ -213,10 +247,23 @@ def rank(
                 continue
             if there.all():
                 logs[name] = log
-            ranked.append(Ranked(name, *served, dispersions[name]))
+            if np.unique(place[there]).size == records.size:
+                without[name] = deviations_without(log[there], y[there], place[there])
+            power = parse_measure(name).power
+            spread = dict.fromkeys(dispersions[name], nan) if power == 0 and fixed else dispersions[name]
+            ranked.append(Ranked(name, *served, spread))
         ranked.sort(key=lambda each: each.efficiency)
+        equal = [
+            each.measure
+            for each in ranked[1:]
+            if (best := ranked[0]).measure in without
+            and each.measure in without
+            and not is_clear(each.efficiency - best.efficiency, without[each.measure] - without[best.measure])
+        ]
         unknown = tally.unknown_if_checked
-        rankings.append(Ranking(structure, tuple(ranked), tuple(against), alike, left_out, unknown))
+        rankings.append(
+            Ranking(structure, tuple(ranked), tuple(against), alike, left_out, unknown, tuple(equal), lacking)
+        )
     return rankings
 
 
@@ -290,6 +337,8 @@ def with_rankings(shown: View, rankings: Sequence[Ranking]) -> View:
             "alike": dict(each.alike),
             "left_out": dict(each.left_out),
             "unknown": each.unknown,
+            "equal": list(each.equal),
+            "lacking": list(each.lacking),
             "verdict": judge(each),
         }
         for each in rankings
@@ -330,7 +379,22 @@ def judge(ranking: Ranking) -> list[str]:
         f"Of {len(ranking.measures)} measures {best.measure} is the most efficient over the {over}: "
         f"ln(phi/phi_cr) scatters by {best.efficiency:.2g} about its line."
     )
-    return [first, *left_out, _of_trends(ranking), "Other records may give another order."]
+    sentences = [first]
+    if ranking.equal:
+        others = [
+            f"{each.measure} ({each.efficiency:.2g})" for each in ranking.measures if each.measure in ranking.equal
+        ]
+        sentences.append(
+            f"{in_short(others)} may be as efficient: leaving out each record in turn, {best.records} records do not "
+            f"tell {'them' if len(others) > 1 else 'it'} apart from {best.measure} at {percent(CONFIDENCE)}."
+        )
+    if ranking.lacking:
+        there = len(ranking.measures) + len(ranking.alike) + len(ranking.left_out)
+        sentences.append(
+            f"Only {there} of {there + len(ranking.lacking)} measures are in the store: `rocking fragility` with "
+            f"{named('rank_measures')} computes all."
+        )
+    return [*sentences, *left_out, _of_trends(ranking), "Other records may give another order."]
 
 
 def _of_trends(ranking: Ranking) -> str:
@@ -344,7 +408,9 @@ def _of_trends(ranking: Ranking) -> str:
     if not free:
         return f"The residuals of each have a trend with {over}: none is sufficient."
     best = free[0]
-    which = "It" if best is ranking.measures[0] else f"{best.measure}, with {best.efficiency:.2g},"
+    which = (
+        "It" if best is ranking.measures[0] and not ranking.equal else f"{best.measure}, with {best.efficiency:.2g},"
+    )
     return (
         f"{which} is the most efficient of the {len(free)} whose residuals show no trend with {over} "
         f"(p of {MIN_P_VALUE:g} or more); the absence of a detected trend does not prove that there is none."

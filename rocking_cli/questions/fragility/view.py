@@ -138,12 +138,12 @@ def view(
     bad = sum(each.reason is not None for each in plan.records)
     good = len(plan.records) - bad
     records = f"{good} record{'s' * (good != 1)}" + (f" ({bad} more cannot be used)" if bad else "")
-    so_far = "" if finished == plan.total else f" of {plan.total:,}, so far"
     doubtful, by_blocks = (sum(getattr(each, count) for each in used.values()) for count in ("unknown", "by_blocks"))
     of_them = [f"{doubtful:,} of {UNKNOWN} outcome"] if doubtful else []
     of_them += [f"{by_blocks:,} with free blocks"] if by_blocks else []
-    counts = f"{finished:,} runs{so_far}" + (f" ({', '.join(of_them)})" if of_them else "")
-    parts: list[Table | str] = [half(each) for each in curves if each.limit == OVERTURNING]
+    counts = f"{finished:,} runs" + (f" ({', '.join(of_them)})" if of_them else "")
+    parts: list[Table | str] = [] if finished == plan.total else [f"Partial: {finished:,} of {plan.total:,} runs."]
+    parts += [half(each) for each in curves if each.limit == OVERTURNING]
     parts.append(f"{name}: {definition.method}, {records}, {counts}, seed {definition.seed}")
     parts += sets_in_words(plan)
     interval = f"{100 * definition.confidence:g} %"

@@ -101,8 +101,10 @@ def _smallest(found: OverturningMap, unit: float, *, dimensionless: bool) -> str
         last, places = curve.size - 1, np.flatnonzero(curve == np.nanmin(curve)).tolist()
         k = next((k for k in places if k in (0, last)), places[0])
         edge = k in (0, last) or curve[k] == found.a[0]
-        step = f"{unit * curve[k]:.3g}{end} (in steps of at most {unit * np.diff(found.a).max():.2g}{end}), at {at(k)}"
-        return f"{step}, the edge of the map: beyond it, less may do." if edge else f"{step}."
+        below = found.a[found.a < curve[k]]
+        step = f" (next smaller tried: {unit * below[-1]:.3g}{end})" if below.size else ""
+        value = f"{unit * curve[k]:.3g}{end}{step}, at {at(k)}"
+        return f"{value}, the edge of the map: beyond it, less may do." if edge else f"{value}."
 
     known, may = (not np.isnan(curve).all() for curve in (least, doubtful))
     sentences = [f"The smallest {sign} on the map that overturns {name} is {smallest(least)}"] if known else [

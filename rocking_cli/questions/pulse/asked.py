@@ -37,7 +37,13 @@ class PulseAsked(SizedPulse, BothWays, OfJoints):
         Idle(
             "on the dimensionless block, which {a} and {omega} ask about",
             lambda asked: asked.on_block,
-            ("structure", "ag", "period", "polarity", "opening"),
+            ("ag", "period", "polarity", "opening"),
+        ),
+        Idle(
+            "on the dimensionless block, which {a} and {omega} ask about: for a structure, give {ag} = a lambda g and "
+            "{period} = 2 pi/(omega p), with lambda and p of `rocking equiv`",
+            lambda asked: asked.on_block,
+            ("structure",),
         ),
         Idle("on a structure, which has its own in its file", lambda asked: not asked.on_block, ("restitution",)),
     )

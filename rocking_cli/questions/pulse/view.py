@@ -34,7 +34,7 @@ def _condition(name: str) -> Column[ClosedForm]:
 
 
 CLOSED: tuple[Column[ClosedForm], ...] = (
-    only_shown("closed form D0*", of("D0"), number, words="energy of the free motion after the pulse (Eq. 42)"),
+    only_shown("closed form D0*", of("D0"), number, words="(phi/phi_cr - 1)^2 - (phi'/phi_cr)^2 at its end (Eq. 42)"),
     only_shown("  max ratio", of("max_ratio"), number, words="peak of the first rebound over phi_cr (Eq. 41)"),
     only_shown("  overturns", of("overturns"), YES_NO.__getitem__, words="eta^2 (1 - D0*) >= 1"),
     *map(_condition, CONDITIONS),
@@ -49,11 +49,11 @@ def _exact(
 
 EXACT: tuple[Column[ExactResponse], ...] = (
     _exact("max_ratio", of("peak_ratio"), "exact max ratio", "largest rotation over phi_cr"),
-    _exact("first_excursion", of("first_excursion"), "  first excursion", "peak before the first impact"),
-    _exact("first_rebound", of("first_rebound"), "  first rebound", "peak after the first impact"),
+    _exact("first_excursion", of("first_excursion"), "exact first excursion", "peak before the first impact"),
+    _exact("first_rebound", of("first_rebound"), "exact first rebound", "peak after the first impact"),
     _exact("overturns", of("fell"), "  overturns", form=YES_NO.__getitem__),
     _exact("impacts_before_overturning", lambda exact: impacts_before(exact), "  impacts", "before it overturns", str),
-    _exact("uplift", of("uplift_time"), "  uplift", "tau = p t from the start of the pulse"),
+    _exact("uplift", of("uplift_time"), "exact uplift", "tau = p t from the start of the pulse"),
     _exact("pulse_end", lambda exact: exact.pulse_end - exact.uplift_time, "  end of pulse", "tau from uplift"),
     _exact("first_impact", lambda exact: exact.first_impact - exact.uplift_time, "  first impact", "tau from uplift"),
     Column("impact_during_pulse", lambda exact: exact.first_impact < exact.pulse_end),
@@ -76,7 +76,8 @@ def view(shape: str, a: float, omega: float, eta: float, closed: ClosedForm | No
     if closed is not None:
         rows = [*_table("", CLOSED, closed).rows, *table.rows]
         more = len(rows) - len(table.rows)  # of the closed form
-        table = replace(table, rows=rows, asides=[*range(more), *(more + k for k in table.asides)])
+        hidden = range(more) if closed.D0 is None else ()
+        table = replace(table, rows=rows, asides=[*hidden, *(more + k for k in table.asides)])
     return View(data, [_verdict(a, closed, exact), table, LINEAR_BLOCK])
 
 

@@ -100,7 +100,8 @@ class MotionResult(Response):
         best = self.histories["nonlinear"]
         if best.unknown or (best.fell and self.decisive):
             return False
-        if disagree(self.histories) or self.neighbours[self.polarity].sensitive or best.peak_ratio > NEAR_OVERTURNING:
+        alike = self.neighbours[self.polarity].sensitive is False
+        if disagree(self.histories) or not alike or best.peak_ratio > NEAR_OVERTURNING:
             return True
         close = (self.margin.factors > 1 / MAX_CLOSE_FACTOR) & (self.margin.factors < MAX_CLOSE_FACTOR)
         falls, may_fall = self.margin.overturned[close], self.margin.at_most[close]

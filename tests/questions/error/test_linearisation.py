@@ -201,6 +201,10 @@ def test_the_words_follow_the_numbers():
     arch = run_json("error", EXAMPLES / "arch.yaml")["verdict"]
     assert "prefer kappa2. Base decisions on" in arch and "Kappa2 is good for a first estimate" in arch
     assert "more than 5 %" in arch
+    shown = " ".join(run("error", EXAMPLES / "arch.yaml").stdout.split())
+    assert (
+        "Kappa2 is good for a first estimate (uplift acceleration kept, " in shown and "; disregard kappa1 (" in shown
+    )
     stocky = arch_of(3.0, 100.0)
     curves = [linearisation(stocky, Direction.POSITIVE, np.linspace(0.05, 0.95, 9), np.geomspace(1.1, 10, 9))]
     assert "use the nonlinear time history" in trust(curves, [linearisation(stocky, Direction.POSITIVE, 0.1, 1.1)])

@@ -82,6 +82,14 @@ def test_stripes_are_marked_with_counts_and_wilsons_intervals_under_the_curve():
     assert words(figure)[1:] == ["bands and bars: 95 % confidence; marks: observed shares"]
 
 
+def test_the_legend_has_the_numbers_of_the_table_beyond_the_data_too():
+    each = fitted(stripes([1, 2, 2, 3]))
+    median = each.curve.median
+    assert median.value > LEVELS[-1]
+    said = words(draw_curves({"overturning": each}, "PGA [g]", "a block"))[0]
+    assert f"median {median.value:.3g} g ({median.low:.3g} to {median.high:.3g})" in said
+
+
 def test_marks_of_several_curves_lie_beside_one_another_and_none_is_left_out():
     random = np.random.default_rng(5)
     x, record = np.tile(np.linspace(0.1, 2, 50), 20), np.repeat(np.arange(20), 50)

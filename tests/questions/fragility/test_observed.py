@@ -133,9 +133,12 @@ class TestIntervals:
 def test_few_records_are_said():
     assert few_records(MIN_RELIABLE_RECORDS) == ""
     said = (
-        "intervals and bands are a rough guide: in trials with {} records those that should hold in 95 % of cases held "
-        "in {} to {} %"
+        "intervals and bands are a rough guide: in trials with {} records{} those that should hold in 95 % of cases "
+        "held in {} to {} %"
     )
-    assert few_records(6) == f"only 6 distinct records: {said.format(5, *MEASURED_COVERAGE[5])}"
-    assert few_records(19) == f"only 19 distinct records: {said.format(10, *MEASURED_COVERAGE[10])}"
-    assert few_records(1).startswith("only 1 distinct record: ")
+    smaller = " (the next smaller number tried)"
+    assert few_records(6) == f"only 6 distinct records: {said.format(5, smaller, *MEASURED_COVERAGE[5])}"
+    assert few_records(10) == f"only 10 distinct records: {said.format(10, '', *MEASURED_COVERAGE[10])}"
+    assert few_records(19) == f"only 19 distinct records: {said.format(10, smaller, *MEASURED_COVERAGE[10])}"
+    least = said.format(5, " (the smallest number tried)", *MEASURED_COVERAGE[5])
+    assert few_records(1) == f"only 1 distinct record: {least}"

@@ -9,7 +9,15 @@ import statsmodels.api as sm
 
 from rocking_cli.excitation.base import Origin
 from rocking_cli.questions.fragility import study as of_study
-from rocking_cli.questions.fragility.ranking import Ranked, Ranking, judge, line, serves
+from rocking_cli.questions.fragility.ranking import (
+    Ranked,
+    Ranking,
+    deviations_without,
+    is_clear,
+    judge,
+    line,
+    serves,
+)
 from rocking_cli.questions.fragility.store import Store
 from tests.conftest import EXAMPLES, rows_of
 from tests.stores import command
@@ -142,6 +150,37 @@ class TestStudy:
         path.write_text(f"{text}levels: {{measure: PGA, values: [0.3, 0.4, 0.6]}}\n", encoding="utf-8")
         found = json.loads(command("fragility", path, "--rank-measures", "--json").stdout)["ranking"][0]
         assert {(each["runs"], each["records"]) for each in found["measures"]} == {(9, 3)}
+
+
+def test_the_deviation_without_a_record_is_that_of_the_others():
+    random = np.random.default_rng(3)
+    record = random.permutation(np.repeat(np.arange(7), 5))
+    x = random.normal(size=record.size)
+    y = 0.7 * x + random.normal(size=record.size) + record
+    others = [line(x[record != k], y[record != k]).deviation for k in range(7)]
+    np.testing.assert_allclose(deviations_without(x, y, record), others, rtol=1e-12)
+
+
+def test_a_difference_is_clear_where_leaving_out_a_record_does_not_change_it():
+    assert is_clear(0.1, np.full(8, 0.1)) and is_clear(-0.1, np.full(8, -0.1))
+    assert not is_clear(0.0, np.zeros(8)) and not is_clear(0.1, np.array([0.1]))
+    # The jackknife of a mean has the standard error of the mean: here 2.36 of them are 0.95 of 7 degrees of freedom.
+    of_each = np.random.default_rng(5).normal(size=8)
+    of_each -= of_each.mean()
+    error = of_each.std(ddof=1) / np.sqrt(8)
+    for share, clear in ((2.35, False), (2.38, True)):
+        mean = share * error
+        assert is_clear(mean, mean + (0 - of_each) / 7) is clear
+
+
+@pytest.mark.parametrize("alike", [False, True])
+def test_a_measure_that_is_no_better_is_said_to_be_as_efficient(alike):
+    best, other = ranked("PGV", 0.31, 0.4, 0.2), ranked("PGA", 0.33, 0.4, 0.2)
+    equal = ("PGA",) if alike else ()
+    said = judge(Ranking("block", (best, other), ("Tm", "D5-95"), {}, {}, equal=equal, lacking=("CAV",) * 3))
+    text = "PGA (0.33) may be as efficient: leaving out each record in turn, 8 records do not tell it apart from PGV"
+    assert (f"{text} at 95 %." in said) is alike is any(each.startswith("PGV, with 0.31") for each in said)
+    assert any(each.startswith("Only 2 of 5 measures are in the store: `rocking fragility` with ") for each in said)
 
 
 def ranked(name, efficiency, *p_values, slope=2.0, against=("Tm", "D5-95")):

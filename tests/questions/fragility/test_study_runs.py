@@ -117,6 +117,7 @@ class TestSameResults:
             told.append((shown["share"], shown["runs"], shown["finished"], shown["failed"]))
             if k == 3:  # others read meanwhile
                 assert json.loads(command("results", place, "--json", code=5).stdout)["finished"] == 22
+                assert command("results", place, code=5).stdout.startswith("Partial: 22 of 150 runs.\n")
         assert told == [("3/3", 22, 22, 0), ("1/3", 64, 64, 0), ("2/3", 64, 64, 0)]
         assert contents(place) == contents(whole[2])
         said = command("fragility", whole[0], "--store", place, "--share", "2/3").stdout

@@ -353,15 +353,15 @@ class TestCommand:
     @pytest.mark.parametrize(
         ("least", "unknown", "said"),
         [
-            ([nan, 0.8, 0.6, 0.7], [nan] * 4, "overturns tower is 0.6 g (in steps of at most 0.3 g), at T = 3 s."),
+            ([nan, 0.8, 0.6, 0.7], [nan] * 4, "overturns tower is 0.6 g (next smaller tried: 0.4 g), at T = 3 s."),
             ([nan, 0.8, 0.6, 0.6], [nan] * 4, "at T = 4 s, the edge of the map: beyond it, less may do."),
             ([nan, 0.2, 0.6, 0.6], [nan] * 4, "at T = 2 s, the edge of the map: beyond it, less may do."),
             ([nan] * 4, [nan] * 4, "No pulse on the map overturns tower, up to 0.9 g, from T = 1 s to T = 4 s."),
             ([nan] * 4, [nan, 0.5, 0.7, nan], "No pulse on the map is known to overturn tower, up to 0.9 g, from T = 1 "
-             "s to T = 4 s. The smallest a_g whose outcome is unknown is 0.5 g (in steps of at most 0.3 g), at T = 2 "
+             "s to T = 4 s. The smallest a_g whose outcome is unknown is 0.5 g (next smaller tried: 0.4 g), at T = 2 "
              "s."),
             ([nan, 0.8, 0.6, 0.7], [0.6, nan, nan, nan], "at T = 3 s."),
-            ([nan, 0.8, 0.6, 0.7], [0.5, nan, nan, nan], "unknown is 0.5 g (in steps of at most 0.3 g), at T = 1 s, "
+            ([nan, 0.8, 0.6, 0.7], [0.5, nan, nan, nan], "unknown is 0.5 g (next smaller tried: 0.4 g), at T = 1 s, "
              "the edge of the map: beyond it, less may do."),
         ],
     )  # fmt: skip

@@ -128,6 +128,10 @@ def test_overturning_is_an_answer(block):
     [
         ((), "--ag is missing for a pulse on a structure such as 0.6g"),
         (("--a", 2, "--omega", 3, "--ag", "0.4g"), "--ag has no effect on the dimensionless block, which --a"),
+        (
+            (EXAMPLES / "block.yaml", "--a", 2, "--omega", 3),
+            "for a structure, give --ag = a lambda g and --period = 2 pi/(omega p)",
+        ),
         (("--ag", "0.6", "--period", 0.8), "'0.6' has no unit: give one of g, m/s2"),
         (("--ag=-0.6g", "--period", 0.8), "--polarity -1 reverses the pulse"),
         (("--ag", "0.6g", "--period", 1, "--shape", "sine:3"), "expected sine:AMPLITUDE:PERIOD"),

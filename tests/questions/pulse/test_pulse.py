@@ -15,7 +15,7 @@ from pytest import approx
 
 from rocking_cli.dynamics.exact import closed_form
 from rocking_cli.errors import InputError
-from rocking_cli.questions.pulse.view import why_not_valid
+from rocking_cli.questions.pulse.view import CONDITIONS, why_not_valid
 from tests.cli.test_cli import run as command
 from tests.cli.test_cli import run_json
 from tests.pulses import exact_pulse
@@ -250,6 +250,16 @@ def test_how_far_off_the_closed_form_is_out_of_its_domain_is_said():
     value, high = re.search(r"Eq. 41 gives ([\d.]+), (\d+) % too high", said).groups()
     assert float(value) == approx(closed["printed_ratio"], rel=1e-3)
     assert float(high) == approx(100 * closed["off_peak_ratio"] / peak, abs=0.5)
+
+
+@pytest.mark.parametrize(("a", "omega", "failed"), [(4, 6, None), (2, 3, "after the pulse")])
+def test_D0_and_all_conditions_are_shown_whether_or_not_they_hold(a, omega, failed):
+    said = words("--a", a, "--omega", omega)
+    assert f"closed form D0* {closed_form(a, omega, 0.9).D0:.6g} (phi/phi_cr - 1)^2" in said
+    for words_of, beginning in CONDITIONS.items():
+        holds = "no" if failed and failed in beginning else "yes"
+        assert f"condition {holds} {beginning}" in said, words_of
+    assert "condition" not in words("--a", 0.5, "--omega", 3)
 
 
 def test_a_block_that_overturns_without_impact_has_no_closed_form():

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import rocking_cli as rk
+from rocking_cli.dynamics.outcome import OUTCOME_FIELDS
 from rocking_cli.questions.respond import each
 from tests.conftest import EXAMPLES
 
@@ -298,3 +299,14 @@ def test_a_plot_is_of_any_two_columns(answer):
         rk.InputError, match="`y` must be a column of numbers, got 'peak_ration'\n  did you mean peak_ratio"
     ):
         drawn(y="peak_ration")
+
+
+def test_an_unknown_run_is_that_of_respond_but_ends_there():
+    """All of it is, to the last bit, but the largest opening, which `respond` follows beyond."""
+    given = EXAMPLES / "masonry" / "portal.yaml", ACCEL
+    one = rk.respond(*given, scale=2.1, model="nonlinear")["nonlinear"]
+    many = rk.respond_each(*given, scale=2.1, model="nonlinear")["nonlinear"]
+    pairs = {name: (getattr(one, name), getattr(many, name).item()) for name in OUTCOME_FIELDS}
+    different = [name for name, pair in pairs.items() if not np.array_equal(*pair, equal_nan=True)]
+    assert one.unknown and different == ["opening"]
+    assert 0.005 < pairs["opening"][1] < pairs["opening"][0]
