@@ -221,7 +221,9 @@ def _stronger(
     bare = _verified(tied.exact.without(names), direction, ground, control)
     if not (bare.ratio or 0.0) > (tied.ratio or 0.0):
         return tied
-    return replace(bare, remarks=[Remark.of("stronger_without", names=names, ratio=tied.ratio), *bare.remarks])
+    ties = remarks.elongations(tied.exact)
+    values = {"names": names, "ratio": tied.ratio, "ties": ties}
+    return replace(bare, remarks=[Remark("stronger_without", values), *bare.remarks])
 
 
 def _verified(
