@@ -38,7 +38,7 @@ NEXT_STEPS: Mapping[str, str] = {
     NextStep.MORE_MOTIONS: "give at least as many records as the code requires",
     NextStep.FIRST_MECHANISM: "describe the mechanism that starts first as a structure, and verify that structure",
     NextStep.SITE_VALUES: "give the values that the code requires in the site file (`rocking new site` prints one)",
-    NextStep.RESPOND: "`rocking respond` under this motion names the joint that opens or slides, and when",
+    NextStep.RESPOND: "`rocking respond` under this motion says what ends what is known, and when",
     NextStep.FREE_BLOCKS: GO_ON.removesuffix("; "),
     NextStep.DESIGN: "`rocking design` finds the value of a field at which the ratio reaches what is required",
 }
@@ -81,6 +81,9 @@ def limits_in_words(end: Conclusion, say: Language = ENGLISH) -> list[str]:
 def reasons_of(end: Conclusion, say: Language = ENGLISH) -> Remark:
     """Return the conditions of a conclusion, or why it is not decided, as clauses; without values if there are none."""
     each = [_remark(limit, say) for limit in end.limits if limit.effect is not Effect.REPLACES]
+    if end.concluded is Concluded.NOT_DECIDED and not each:
+        why = "missing" if end.ratio is None else "before" if end.required is None else "whole"
+        each = [Remark.of(f"end_{why}")]
     values = {f"reason{k}": reason for k, reason in enumerate(each)}
     return Remark("; ".join(f"{{{key}}}" for key in values), values)
 

@@ -68,10 +68,14 @@ def peaks(
     }
     of_direction = {}
     for direction, curve in curves.items():
-        d, known_to, _ = _largest(curve, direction, histories)
+        d, known_to, last = _largest(curve, direction, histories)
         d_FC, known_to_FC, history = _largest(curve, direction, weaker[curve.confidence])
         slow = None if known_to_FC is None else sqrt(curve.confidence) * known_to_FC
-        of_direction[direction] = RecordPeak(motion.name, d_FC, d, slow, known_to, history=history)
+        ends = history if known_to_FC is not None else last if known_to is not None else None
+        of_direction[direction] = RecordPeak(
+            motion.name, d_FC, d, slow, known_to, why=None if ends is None else _why(ends),
+            history=history if known_to_FC is None else None,
+        )  # fmt: skip
     return of_direction
 
 
@@ -128,18 +132,27 @@ def _state_of_records(verification: ItalianVerification, state: str | None) -> s
 def _largest(
     curve: ExactCurve, direction: Direction, histories: Sequence[History]
 ) -> tuple[float | None, float | None, History | None]:
-    """Return the largest d of several histories in a direction [m], until when they are known [s], and its history.
+    """Return the largest d of several histories in a direction [m], until when they are known [s], and which decides.
 
     There is no d if a history overturned in this direction, or has an unknown outcome.
     """
     if any(history.fell and history.fell_to == direction for history in histories):
         return None, None, None
-    unknown = [history.known_to for history in histories if history.unknown]
+    unknown = [history for history in histories if history.unknown]
     if unknown:
-        return None, min(unknown), None
+        first = min(unknown, key=lambda history: history.known_to)
+        return None, first.known_to, first
     rotations = [history.peak_positive if direction > 0 else history.peak_negative for history in histories]
     phi = max(rotations)
     return float(displacement(curve, np.array([phi]))[0]), None, histories[rotations.index(phi)]
+
+
+def _why(history: History) -> Remark:
+    """Return why an unknown outcome is not known longer, a clause."""
+    if history.bound is not None and history.bound.kind == "yields":
+        return Remark.of("unknown_yields", name=history.bound.name)
+    joint = history.bound is None and history.check is not None and history.check.reason in ("opens", "slides")
+    return Remark.of("unknown_joint" if joint else "unknown_other")
 
 
 def displacement(curve: ExactCurve, phi: Reals) -> Reals:

@@ -272,7 +272,7 @@ class ItalianSite(StateGround, Site):
             return self
         path = folder / self.grid
         if not path.is_file():
-            hint = "a relative path is one from the folder of the site file"
+            hint = "give its path from the folder of the site file, or instead `hazard` rows, or ag, F0, TC_star"
             raise InputError(Problem(f"names no file: {path}", field="grid", hint=hint))
         cell = read_grid(path).cell(self.longitude, self.latitude)
         located = self.model_copy(update={"hazard": cell.rows})
@@ -367,7 +367,7 @@ class ItalianSite(StateGround, Site):
             yield (name,), f"cannot be combined with {source}, from which the ground is computed: give one of the two"
         for name in COORDINATES if source == "grid" else ():
             if not there(name):
-                yield (name,), f"is missing: a site by coordinates has {', '.join(COORDINATES)}"
+                yield (name,), f"is missing: give {', '.join(COORDINATES)}, or instead `hazard` rows, or ag, F0, TC_star"
 
     @classmethod
     def _on_rock(cls, given: dict[str, Any]) -> dict[str, dict[str, Any]]:

@@ -164,4 +164,5 @@ def _on_histories(say: Language, dynamic: Dynamic, *, confident: bool) -> Iterat
     if mean is not None:
         yield say("holds" if dynamic.holds(confident=confident) else "holds_not", **values)
     elif unknown:
-        yield say("unknown_fails", **values, names=", ".join(unknown), count=len(unknown))
+        why = list(dict.fromkeys(say(each.why) for each in dynamic.records if each.why is not None))
+        yield say("unknown_fails", **values, names=", ".join(unknown), count=len(unknown), why=why)
