@@ -213,12 +213,15 @@ def governing_polarity(ends: Mapping[int, Conclusion], governs: int | None, over
     return f"Polarity {governs} governs: {sentence}."
 
 
-def of_margin(end: Conclusion, over: str) -> str:
-    """Return the conclusion of a margin in sentences: the motion that governs, its outcome, share and factor."""
+def of_margin(end: Conclusion, over: str, unknown: str = "") -> str:
+    """Return the conclusion of a margin in sentences: the motion that governs, its outcome, share and factor.
+
+    `unknown` stands in place of the factor if what is known ends there.
+    """
     assert end.ratio is not None
     which = f"{end.motion} governs {len(end.motions)} motions: at" if len(end.motions) > 1 else "At"
     some = f"{percent(LEAST_SHARE)} or more"
-    factor = (
+    factor = unknown or (
         f"The smallest factor at which {some} may overturn is {end.ratio:.3g}."
         if isfinite(end.ratio)
         else f"At no factor tried may {some} overturn."
