@@ -7,7 +7,7 @@ be changed; without FC it is the structure's own history. The inertia is that of
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import sqrt
 
@@ -15,17 +15,22 @@ import numpy as np
 
 from rocking_cli.arrays import Reals
 from rocking_cli.codes.italian.capacity import ExactCurve
+from rocking_cli.codes.italian.demand import REFERENCE_DAMPING
+from rocking_cli.codes.italian.ground import site_demand
 from rocking_cli.codes.italian.results import Dynamic, ItalianVerification, RecordPeak
-from rocking_cli.codes.italian.site import ItalianSite, floor_at
+from rocking_cli.codes.italian.site import ItalianSite, floor_at, of_structure
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import History
 from rocking_cli.errors import InputError, Problem, named
-from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.processing.oscillator import response_spectrum
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import follow
-from rocking_cli.verification.results import Histories, Remark, where_it_stands
+from rocking_cli.verification.demand import SiteDemand
+from rocking_cli.verification.results import Histories, MotionPlace, Remark, where_it_stands
 
 MIN_RECORDS_FOR_MEAN = 7
+LEAST_MEAN = 0.9  # share of the spectrum of the site that the mean of records reaches [NTC 2018, 3.2.3.6]
 
 
 def with_confidence(motion: GroundMotion, FC: float) -> GroundMotion:
@@ -112,7 +117,24 @@ def with_histories(
     ]
     if unchecked is not None:
         remarks.append(Remark("unchecked", {}, [state]))
+    if len(histories.records) >= MIN_RECORDS_FOR_MEAN:
+        T = max(each.states[state].T for each in directions.values())
+        remarks += _below_target(site_demand(of_structure(site, verification.mechanism)), what, histories.motions, state, T)
     return replace(verification, directions=directions, remarks=remarks)
+
+
+def _below_target(
+    demand: SiteDemand, what: MotionPlace, motions: Sequence[GroundMotion], state: str, T: float
+) -> Iterator[Remark]:
+    """Yield that the mean spectrum of records is below that of the site at the period that decides [s]."""
+    at, of_floor = demand.states[state], what.kind == "of_floor"
+    target = at.floor if of_floor and at.floor is not None else at.ground
+    if T < at.last:
+        sa = [float(response_spectrum(each.of_ground, [T], REFERENCE_DAMPING).sa[0]) for each in motions]
+        share = STANDARD_GRAVITY * sum(sa) / len(sa) / target.acceleration(T, REFERENCE_DAMPING)
+        if share < LEAST_MEAN:
+            values = {"share": 100 * share, "T": T, "state": state, "least": 100 * LEAST_MEAN}
+            yield Remark("below_target", values, [state])
 
 
 def _state_of_records(verification: ItalianVerification, state: str | None) -> str:

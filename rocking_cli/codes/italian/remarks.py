@@ -51,7 +51,7 @@ EFFECTS: Mapping[str, Effect] = {
     **dict.fromkeys(
         ("seats", "factors", "sources", "strength_alone", "plate_alone", "anchored", "carries", "wide", "one_mode",
          "low_floor", "same_mode", "own_formula", "carried", "line_fails", "structure", "mid_height", "joint",
-         "unchecked"),
+         "unchecked", "below_target", "ours_fails"),
         Effect.CONDITION,
     ),
     **dict.fromkeys(("long", "unsupported"), Effect.UNDECIDED),
@@ -89,6 +89,8 @@ def of_site(ground: SiteGround, directions: Collection[ItalianVerified], given_F
         by_displacement = {state for each in directions for state in each.by_displacement}
         limited = _capacities(rule.state for rule in RULES)
         remarks.append(Remark("seats", {"limited": limited, "seats": seats}, sorted(by_displacement)))
+    elif (mechanism := next(iter(directions)).chain.mechanism).crushing is None and not mechanism.strength:
+        remarks.append(Remark.of("unlimited"))
     return remarks + _of_mechanism(next(iter(directions)).chain.mechanism)
 
 
