@@ -82,8 +82,8 @@ def reasons_of(end: Conclusion, say: Language = ENGLISH) -> Remark:
     """Return the conditions of a conclusion, or why it is not decided, as clauses; without values if there are none."""
     each = [_remark(limit, say) for limit in end.limits if limit.effect is not Effect.REPLACES]
     if end.concluded is Concluded.NOT_DECIDED and not each:
-        why = "missing" if end.ratio is None else "before" if end.required is None else "whole"
-        each = [Remark.of(f"end_{why}")]
+        shaken = end.ratio is not None or end.motion
+        each = [Remark.of("end_before" if end.required is None else "end_whole" if shaken else "end_missing")]
     values = {f"reason{k}": reason for k, reason in enumerate(each)}
     return Remark("; ".join(f"{{{key}}}" for key in values), values)
 
@@ -124,7 +124,8 @@ def _governs(end: Conclusion, say: Language, method: str) -> str:
         key = f"end_ratio_{end.method}" if f"end_ratio_{end.method}" in say.texts else "end_ratio"
         ratio = Remark.of(key, ratio=end.ratio, digits=digits_beside(end.ratio, end.required or 1.0))
     else:
-        key = {Concluded.UNKNOWN: "end_unproven", Concluded.NOT_DECIDED: "end_missing"}.get(end.concluded, "end_past")
+        missing = end.concluded is Concluded.NOT_DECIDED and not end.motion
+        key = "end_missing" if missing else "end_unproven" if end.concluded is Concluded.UNKNOWN else "end_past"
         ratio = Remark.of(key, motion=end.motion)
     direction = Remark.of(f"end_direction_{end.direction}") if end.direction else ""
     values = {"state": end.limit_state, "direction": direction, "ratio": ratio}

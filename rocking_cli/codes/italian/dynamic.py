@@ -118,8 +118,9 @@ def with_histories(
     if unchecked is not None:
         remarks.append(Remark("unchecked", {}, [state]))
     if len(histories.records) >= MIN_RECORDS_FOR_MEAN:
+        demand = site_demand(of_structure(site, verification.mechanism))
         T = max(each.states[state].T for each in directions.values())
-        remarks += _below_target(site_demand(of_structure(site, verification.mechanism)), what, histories.motions, state, T)
+        remarks += _below_target(demand, what, histories.motions, state, T)
     return replace(verification, directions=directions, remarks=remarks)
 
 
@@ -129,7 +130,7 @@ def _below_target(
     """Yield that the mean spectrum of records is below that of the site at the period that decides [s]."""
     at, of_floor = demand.states[state], what.kind == "of_floor"
     target = at.floor if of_floor and at.floor is not None else at.ground
-    if T < at.last:
+    if at.last > T:
         sa = [float(response_spectrum(each.of_ground, [T], REFERENCE_DAMPING).sa[0]) for each in motions]
         share = STANDARD_GRAVITY * sum(sa) / len(sa) / target.acceleration(T, REFERENCE_DAMPING)
         if share < LEAST_MEAN:

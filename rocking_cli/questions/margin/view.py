@@ -120,9 +120,10 @@ def _where_known_ends(rows: Sequence[MarginRow], end: Conclusion) -> str:
     row = next(row for row in rows if row.name == end.motion)
     if row.margin.first(LEAST_SHARE) == row.margin.first(LEAST_SHARE, unknown=True):
         return ""
-    known = "" if row.margin.known_to is None else f"all outcomes are known up to a factor of {row.margin.known_to:.3g}; "
+    known = row.margin.known_to
+    up_to = "" if known is None else f"all outcomes are known up to a factor of {known:.3g}; "
     some = f"from {end.ratio:.3g} on, {percent(LEAST_SHARE)} or more overturn or are unknown"
-    return f"Not a margin to overturning: {known}{some}, as {_why(row.margin, row.unknown)}."
+    return f"Not a margin to overturning: {up_to}{some}, as {_why(row.margin, row.unknown)}."
 
 
 def _why(found: Margin, unknown: History | None) -> str:

@@ -164,5 +164,6 @@ def _on_histories(say: Language, dynamic: Dynamic, *, confident: bool) -> Iterat
     if mean is not None:
         yield say("holds" if dynamic.holds(confident=confident) else "holds_not", **values)
     elif unknown:
-        why = list(dict.fromkeys(say(each.why) for each in dynamic.records if each.why is not None))
+        every = [each.why or Remark.of("unknown_other") for each in dynamic.records if each.name in unknown]
+        why = list(dict.fromkeys(map(say, every)))
         yield say("unknown_fails", **values, names=", ".join(unknown), count=len(unknown), why=why)
