@@ -89,9 +89,10 @@ def of_site(ground: SiteGround, directions: Collection[ItalianVerified], given_F
         by_displacement = {state for each in directions for state in each.by_displacement}
         limited = _capacities(rule.state for rule in RULES)
         remarks.append(Remark("seats", {"limited": limited, "seats": seats}, sorted(by_displacement)))
-    elif (mechanism := next(iter(directions)).chain.mechanism).crushing is None and not mechanism.strength:
+    mechanism = next(iter(directions)).chain.mechanism
+    if mechanism.crushing is None and not mechanism.strength:
         remarks.append(Remark.of("unlimited"))
-    return remarks + _of_mechanism(next(iter(directions)).chain.mechanism)
+    return remarks + _of_mechanism(mechanism)
 
 
 def _mending_confidence(chain: Chain) -> Remark:

@@ -22,14 +22,16 @@ from rocking_cli.views.sheet.language import ENGLISH
 from rocking_cli.views.verdict import INVALID_REASON, unchecked
 from rocking_cli.views.view import ABSENT, View
 
-BEFORE = "What is required, {:.4g}, is by the intervention of the site, with the file as given as before it ({:.4g})."
+REQUIRED_AFTER = (
+    "What is required, {:.4g}, is by the intervention of the site, with the file as given as before it ({:.4g})."
+)
 MAX_SCAN_ROWS = 11  # values of the scan that the table lists
 
 
 def view(found: Design, excitation: Excitation) -> View:
     """Show the answer in a sentence, the scan, and remarks."""
     title = f"{found.structure}: {found.field} for {found.aim}"
-    of = "" if found.before is None else BEFORE.format(found.aim.level, found.before)
+    of = "" if found.before is None else REQUIRED_AFTER.format(found.aim.level, found.before)
     first = " ".join(filter(None, [f"{title}. {answer(found)}", of, *in_steel(found), *limited(found)]))
     count = len(found.values)
     some = np.unique(np.linspace(0, count - 1, min(MAX_SCAN_ROWS, count)).round().astype(int))

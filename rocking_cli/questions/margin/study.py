@@ -97,8 +97,8 @@ class Margin:
     @property
     def known_to(self) -> float | None:
         """The largest factor up to which all outcomes are known; None if that is at no factor, or at all of them."""
-        some = np.flatnonzero(self.unknown > 0)
-        return float(self.factors[some[0] - 1]) if some.size and some[0] else None
+        first = np.flatnonzero(self.unknown > 0)[:1]
+        return float(self.factors[first[0] - 1]) if first.any() else None
 
     def first(self, level: float, *, unknown: bool = False) -> float | None:
         """Return the least factor at which a share `level` overturns (or is unknown); None without one."""

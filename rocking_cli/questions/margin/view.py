@@ -122,8 +122,8 @@ def _where_known_ends(rows: Sequence[MarginRow], end: Conclusion) -> str:
         return ""
     known = row.margin.known_to
     up_to = "" if known is None else f"all outcomes are known up to a factor of {known:.3g}; "
-    some = f"from {end.ratio:.3g} on, {percent(LEAST_SHARE)} or more overturn or are unknown"
-    return f"Not a margin to overturning: {up_to}{some}, as {_why(row.margin, row.unknown)}."
+    from_there = f"from {end.ratio:.3g} on, {percent(LEAST_SHARE)} or more overturn or are unknown"
+    return f"Not a margin to overturning: {up_to}{from_there}, as {_why(row.margin, row.unknown)}."
 
 
 def _why(found: Margin, unknown: History | None) -> str:

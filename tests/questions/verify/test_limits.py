@@ -227,6 +227,16 @@ class TestKinds:
             ties = mended.to_dict()["directions"]["positive"]["ties"]
             assert ties["bar"]["strength_governs"] == governs
 
+    def test_strength_is_said_to_be_unlimited_unless_it_is_given(self):
+        for more, said in (
+            ({}, True),
+            ({"loads": [{**ROOF, "seat": None}]}, True),
+            ({"crushing": {"strength": 1e6}}, False),
+        ):
+            assert (
+                "The compressive strength is taken as unlimited" in " ".join(verified({**WALL, **more}).sentences)
+            ) == said
+
     def test_a_reading_of_sliding_floors_that_fails_is_a_condition_of_the_letter_that_passes(self):
         wall = {**WALL, "loads": [{**ROOF, "mass": 12000.0, "floor": "sliding"}]}
         letter = verified(wall, ag=0.15)

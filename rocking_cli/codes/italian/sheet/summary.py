@@ -40,6 +40,9 @@ def context(say: Language, verification: ItalianVerification, sides: Sequence[Di
     ]  # fmt: skip
     remarks = [*(each for side in sides for each in side.found.remarks), *verification.remarks]
     only = next((each for each in remarks if isinstance(each, Remark) and each.key == "bends"), Remark.of("only_this"))
+    remarks = [
+        each for each in remarks if not (isinstance(each, Remark) and each.key == "unlimited")
+    ]  # is an assumption
     cautions = [each for each in remarks if isinstance(each, Remark) and each.key in CAUTIONS]
     general = say.caution(mechanism.mechanism, mechanism.caution) if mechanism.caution else ""
     particular = say.recognised("caution", mechanism.own_caution())
