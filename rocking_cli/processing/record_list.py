@@ -125,7 +125,7 @@ def relative(file: Path, folder: Path) -> str:
         return str(file.resolve())
 
 
-SELECT_HINT = "`rocking select` writes one"
+SELECT_HINT = "write `records:`, and below it a line `- {file: a.csv}` for each; `rocking select` writes one"
 
 
 class RecordList(BaseModel):

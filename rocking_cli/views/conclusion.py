@@ -38,7 +38,7 @@ NEXT_STEPS: Mapping[str, str] = {
     NextStep.MORE_MOTIONS: "give at least as many records as the code requires",
     NextStep.FIRST_MECHANISM: "describe the mechanism that starts first as a structure, and verify that structure",
     NextStep.SITE_VALUES: "give the values that the code requires in the site file (`rocking new site` prints one)",
-    NextStep.RESPOND: "`rocking respond` under this motion names the joint that opens or slides, and when",
+    NextStep.RESPOND: "`rocking respond` under this motion says what ends what is known, and when",
     NextStep.FREE_BLOCKS: GO_ON.removesuffix("; "),
     NextStep.DESIGN: "`rocking design` finds the value of a field at which the ratio reaches what is required",
 }
@@ -81,6 +81,9 @@ def limits_in_words(end: Conclusion, say: Language = ENGLISH) -> list[str]:
 def reasons_of(end: Conclusion, say: Language = ENGLISH) -> Remark:
     """Return the conditions of a conclusion, or why it is not decided, as clauses; without values if there are none."""
     each = [_remark(limit, say) for limit in end.limits if limit.effect is not Effect.REPLACES]
+    if end.concluded is Concluded.NOT_DECIDED and not each:
+        shaken = end.ratio is not None or end.motion
+        each = [Remark.of("end_before" if end.required is None else "end_whole" if shaken else "end_missing")]
     values = {f"reason{k}": reason for k, reason in enumerate(each)}
     return Remark("; ".join(f"{{{key}}}" for key in values), values)
 
@@ -121,7 +124,8 @@ def _governs(end: Conclusion, say: Language, method: str) -> str:
         key = f"end_ratio_{end.method}" if f"end_ratio_{end.method}" in say.texts else "end_ratio"
         ratio = Remark.of(key, ratio=end.ratio, digits=digits_beside(end.ratio, end.required or 1.0))
     else:
-        key = {Concluded.UNKNOWN: "end_unproven", Concluded.NOT_DECIDED: "end_missing"}.get(end.concluded, "end_past")
+        missing = end.concluded is Concluded.NOT_DECIDED and not end.motion
+        key = "end_missing" if missing else "end_unproven" if end.concluded is Concluded.UNKNOWN else "end_past"
         ratio = Remark.of(key, motion=end.motion)
     direction = Remark.of(f"end_direction_{end.direction}") if end.direction else ""
     values = {"state": end.limit_state, "direction": direction, "ratio": ratio}
@@ -210,12 +214,15 @@ def governing_polarity(ends: Mapping[int, Conclusion], governs: int | None, over
     return f"Polarity {governs} governs: {sentence}."
 
 
-def of_margin(end: Conclusion, over: str) -> str:
-    """Return the conclusion of a margin in sentences: the motion that governs, its outcome, share and factor."""
+def of_margin(end: Conclusion, over: str, unknown: str = "") -> str:
+    """Return the conclusion of a margin in sentences: the motion that governs, its outcome, share and factor.
+
+    `unknown` stands in place of the factor if what is known ends there.
+    """
     assert end.ratio is not None
     which = f"{end.motion} governs {len(end.motions)} motions: at" if len(end.motions) > 1 else "At"
     some = f"{percent(LEAST_SHARE)} or more"
-    factor = (
+    factor = unknown or (
         f"The smallest factor at which {some} may overturn is {end.ratio:.3g}."
         if isfinite(end.ratio)
         else f"At no factor tried may {some} overturn."

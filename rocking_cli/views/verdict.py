@@ -26,7 +26,7 @@ TIME_TOLERANCE = 1e-2  # s within which two events are at the same time
 ASSUMED = (
     "The friction required, {:.3g}, is more than the {:g} usual for masonry: the result assumes that nothing slides."
 )
-INVALID_REASON = "the model no longer holds: a joint opens or slides too far, or something is met"
+INVALID_REASON = "the model no longer holds: a joint opens or slides too far, a tie yields, or something is met"
 NO_JOINTS = "The equivalent blocks have no joints, so their results are not those of the structure."
 MIN_OPENING = 1e-6  # share of D_cr: a smaller opening is reported as none
 # From a comparison with free blocks: a peak below SMALL_PEAK has an error of some 20 % if a joint opens by more than

@@ -197,8 +197,8 @@ def view(
     if found.strengthened is None:
         parts += _sentences(found, site, say)
     else:
-        parts += _sentences(found, site, say, "Existing structure: ")
-        parts += _sentences(found.strengthened, site, say, "Strengthened structure: ")
+        parts += _sentences(found, site, say, "Existing structure:")
+        parts += _sentences(found.strengthened, site, say, "Strengthened structure:")
         parts += shown_by.compared(found, found.strengthened)
     if found.strengthened is None or not in_short:
         parts += (_in_short if in_short else _in_full)(found, shown(found, say), shown_by)
@@ -222,7 +222,7 @@ def named(mechanism: Mechanism, say: Language) -> str:
 def _sentences(found: Verification, site: str | None, say: Language, of: str = "") -> list[str]:
     """Return the conclusion in sentences: first the ties that do not count; `of` begins each."""
     mechanism, by = found.mechanism, {"code": say(found.name), "edition": say(found.edition)}
-    end, of, where = found.conclusion, say(of), say(", at {site}", site=site) if site else ""
+    end, of, where = found.conclusion, of and f"{say(of)} ", say(", at {site}", site=site) if site else ""
     first, concluded = uncounted_ties(end, say), of_verification(found, say)
     head = say("{structure}, by the {code} ({edition}){where}.", structure=named(mechanism, say), where=where, **by)
     answer = " ".join(filter(None, [head, *concluded[len(first) :], next_in_words(end, say)]))
@@ -267,6 +267,7 @@ def _in_short(found: Verification, sides: Mapping[str, Any], shown_by: Showing[A
     for (where, each), parts in zip(sides.items(), alike, strict=True):
         named = zip(parts_of(each, where), parts, strict=True)
         yield from (with_direction for with_direction, part in named if part not in shared)
+    yield _which_direction(say, found) if len(sides) > 1 else ""
     yield from (part for part in shared if isinstance(part, str))
     yield from map(say, found.remarks)
 
@@ -282,7 +283,7 @@ def _which_direction(say: Language, found: Verification) -> str:
     """State which direction governs, with the ratios of both; empty if none does."""
     least = found.governs
     one, other = found.compared(least), found.compared(least.opposite)
-    if found.alike or one is None or other is None:
+    if found.alike or None in (one, other) or found.conclusion.direction not in ("", least.label):
         return ""
     return say("direction_governs", way=say.recognised("shown", least.label), one=one, other=other)
 

@@ -165,7 +165,8 @@ def test_histories_count_only_if_there_are_as_many_as_the_code_requires():
         seven = rk.verify(block, site, motions=list(weak if why == "too_few" else strong))
         end = seven.conclusion
         assert not end.left_out and len(end.motions) == 7
-        assert end.concluded is (Concluded.SATISFIED if why == "too_few" else Concluded.NOT_SATISFIED)
+        assert end.concluded is (Concluded.SATISFIED_IF if why == "too_few" else Concluded.NOT_SATISFIED)
+        assert [each.key for each in end.limits] == ["below_target"] * (why == "too_few")
     assert end.method == "histories"
     assert "sine:2g:1s takes the structure past its capacity" in " ".join(of_verification(seven.result))
 

@@ -253,7 +253,7 @@ class TestVerification:
         chain = SimpleNamespace(displacement=lambda phi, control: 2 * phi)
         curve = SimpleNamespace(chain=chain, control=None, end=1.0, d0=1.5)
         assert dynamic._largest(curve, Direction.POSITIVE, [falls, open_]) == (None, None, None)
-        assert dynamic._largest(curve, Direction.NEGATIVE, [falls, open_]) == (None, 2.0, None)
+        assert dynamic._largest(curve, Direction.NEGATIVE, [falls, open_]) == (None, 2.0, open_)
         assert dynamic._largest(curve, Direction.NEGATIVE, [falls]) == (0.02, None, falls)
 
     def test_times_with_FC_are_those_of_the_record(self, folder):

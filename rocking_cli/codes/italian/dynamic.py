@@ -7,7 +7,7 @@ be changed; without FC it is the structure's own history. The inertia is that of
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import sqrt
 
@@ -15,17 +15,22 @@ import numpy as np
 
 from rocking_cli.arrays import Reals
 from rocking_cli.codes.italian.capacity import ExactCurve
+from rocking_cli.codes.italian.demand import REFERENCE_DAMPING
+from rocking_cli.codes.italian.ground import site_demand
 from rocking_cli.codes.italian.results import Dynamic, ItalianVerification, RecordPeak
-from rocking_cli.codes.italian.site import ItalianSite, floor_at
+from rocking_cli.codes.italian.site import ItalianSite, floor_at, of_structure
 from rocking_cli.core import Direction
 from rocking_cli.dynamics.history import History
 from rocking_cli.errors import InputError, Problem, named
-from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.processing.oscillator import response_spectrum
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import follow
-from rocking_cli.verification.results import Histories, Remark, where_it_stands
+from rocking_cli.verification.demand import SiteDemand
+from rocking_cli.verification.results import Histories, MotionPlace, Remark, where_it_stands
 
 MIN_RECORDS_FOR_MEAN = 7
+LEAST_MEAN = 0.9  # share of the spectrum of the site that the mean of records reaches [NTC 2018, 3.2.3.6]
 
 
 def with_confidence(motion: GroundMotion, FC: float) -> GroundMotion:
@@ -68,10 +73,14 @@ def peaks(
     }
     of_direction = {}
     for direction, curve in curves.items():
-        d, known_to, _ = _largest(curve, direction, histories)
+        d, known_to, last = _largest(curve, direction, histories)
         d_FC, known_to_FC, history = _largest(curve, direction, weaker[curve.confidence])
         slow = None if known_to_FC is None else sqrt(curve.confidence) * known_to_FC
-        of_direction[direction] = RecordPeak(motion.name, d_FC, d, slow, known_to, history=history)
+        ends = history if known_to_FC is not None else last if known_to is not None else None
+        of_direction[direction] = RecordPeak(
+            motion.name, d_FC, d, slow, known_to, why=None if ends is None else _why(ends),
+            history=history if known_to_FC is None else None,
+        )  # fmt: skip
     return of_direction
 
 
@@ -108,7 +117,25 @@ def with_histories(
     ]
     if unchecked is not None:
         remarks.append(Remark("unchecked", {}, [state]))
+    if len(histories.records) >= MIN_RECORDS_FOR_MEAN:
+        demand = site_demand(of_structure(site, verification.mechanism))
+        T = max(each.states[state].T for each in directions.values())
+        remarks += _below_target(demand, what, histories.motions, state, T)
     return replace(verification, directions=directions, remarks=remarks)
+
+
+def _below_target(
+    demand: SiteDemand, what: MotionPlace, motions: Sequence[GroundMotion], state: str, T: float
+) -> Iterator[Remark]:
+    """Yield that the mean spectrum of records is below that of the site at the period that decides [s]."""
+    at, of_floor = demand.states[state], what.kind == "of_floor"
+    target = at.floor if of_floor and at.floor is not None else at.ground
+    if at.last > T:
+        sa = [float(response_spectrum(each.of_ground, [T], REFERENCE_DAMPING).sa[0]) for each in motions]
+        share = STANDARD_GRAVITY * sum(sa) / len(sa) / target.acceleration(T, REFERENCE_DAMPING)
+        if share < LEAST_MEAN:
+            values = {"share": 100 * share, "T": T, "state": state, "least": 100 * LEAST_MEAN}
+            yield Remark("below_target", values, [state])
 
 
 def _state_of_records(verification: ItalianVerification, state: str | None) -> str:
@@ -128,18 +155,27 @@ def _state_of_records(verification: ItalianVerification, state: str | None) -> s
 def _largest(
     curve: ExactCurve, direction: Direction, histories: Sequence[History]
 ) -> tuple[float | None, float | None, History | None]:
-    """Return the largest d of several histories in a direction [m], until when they are known [s], and its history.
+    """Return the largest d of several histories in a direction [m], until when they are known [s], and which decides.
 
     There is no d if a history overturned in this direction, or has an unknown outcome.
     """
     if any(history.fell and history.fell_to == direction for history in histories):
         return None, None, None
-    unknown = [history.known_to for history in histories if history.unknown]
+    unknown = [history for history in histories if history.unknown]
     if unknown:
-        return None, min(unknown), None
+        first = min(unknown, key=lambda history: history.known_to)
+        return None, first.known_to, first
     rotations = [history.peak_positive if direction > 0 else history.peak_negative for history in histories]
     phi = max(rotations)
     return float(displacement(curve, np.array([phi]))[0]), None, histories[rotations.index(phi)]
+
+
+def _why(history: History) -> Remark:
+    """Return why an unknown outcome is not known longer, a clause."""
+    if history.bound is not None and history.bound.kind == "yields":
+        return Remark.of("unknown_yields", name=history.bound.name)
+    joint = history.bound is None and history.check is not None and history.check.reason in ("opens", "slides")
+    return Remark.of("unknown_joint" if joint else "unknown_other")
 
 
 def displacement(curve: ExactCurve, phi: Reals) -> Reals:

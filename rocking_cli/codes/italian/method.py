@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
-from math import pi, sqrt
+from math import inf, pi, sqrt
 from operator import itemgetter
 
 from pydantic import ValidationError
@@ -35,7 +35,7 @@ from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.hung.element import INTERLOCK_NAME
 from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.studies.conclusion import LeftOut
-from rocking_cli.verification.results import Control, Later, Remark
+from rocking_cli.verification.results import CAPACITY_TOLERANCE, Control, Later, Remark
 
 KEY, NAME = "NTC2018", "Italian code"
 EDITION = "NTC 2018 and Circolare 7/2019"
@@ -137,7 +137,7 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
         ours = _by(taken, site, control)
         notes.append(remarks.of_letter(verification, ours))
         others["our_reading"] = ours.deciding
-    return replace(
+    verification = replace(
         verification,
         variants=partial(_variants, letter, site, control, others),
         remarks=[*notes, *verification.remarks],
@@ -146,6 +146,7 @@ def verify(mechanism: Mechanism, site: ItalianSite, control: Control | None = No
             for tie in (otherwise if taken is not mechanism else ())
         ],
     )  # fmt: skip
+    return judged(verification, site, {}) if letter is not taken else verification
 
 
 def judged(found: ItalianVerification, site: ItalianSite, before: Mapping[str, float | None]) -> ItalianVerification:
@@ -160,7 +161,13 @@ def judged(found: ItalianVerification, site: ItalianSite, before: Mapping[str, f
         ])
         for direction, each in sides.items()
     }  # fmt: skip
-    return replace(found, directions=directions, rules=remarks.of_rules(site, found.mechanism, before))
+    notes = [one for one in found.remarks if not (isinstance(one, Remark) and one.key == "ours_fails")]
+    for letter in (one for one in notes[:] if isinstance(one, Remark) and one.key == "letter"):
+        ours = inf if letter.values["ratio"] is None else letter.values["ratio"]
+        fails = [state for state, least in required.items() if ours < (least or 0.0) * (1 - CAPACITY_TOLERANCE)]
+        notes += [Remark("ours_fails", {"ratio": ours}, fails)] if fails else []
+    rules = remarks.of_rules(site, found.mechanism, before)
+    return replace(found, directions=directions, remarks=notes, rules=rules)
 
 
 def strengthened(found: ItalianVerification, other: ItalianVerification, site: ItalianSite) -> ItalianVerification:
@@ -221,7 +228,9 @@ def _stronger(
     bare = _verified(tied.exact.without(names), direction, ground, control)
     if not (bare.ratio or 0.0) > (tied.ratio or 0.0):
         return tied
-    return replace(bare, remarks=[Remark.of("stronger_without", names=names, ratio=tied.ratio), *bare.remarks])
+    ties = remarks.elongations(tied.exact)
+    values = {"names": names, "ratio": tied.ratio, "ties": ties}
+    return replace(bare, remarks=[Remark("stronger_without", values), *bare.remarks])
 
 
 def _verified(

@@ -15,6 +15,7 @@ from rocking_cli.codes.italian.capacity import (
     ExactCurve,
     beyond,
     elastic,
+    ends,
     furthest,
     pulls,
     strengths,
@@ -46,11 +47,11 @@ from rocking_cli.studies.conclusion import Effect
 from rocking_cli.verification.results import CAPACITY_TOLERANCE, Remark
 
 EFFECTS: Mapping[str, Effect] = {
-    **dict.fromkeys(("confidence", "letter", "onset_alone"), Effect.REPLACES),
+    **dict.fromkeys(("confidence", "letter", "onset_alone", "stronger_without", "tie_limits"), Effect.REPLACES),
     **dict.fromkeys(
         ("seats", "factors", "sources", "strength_alone", "plate_alone", "anchored", "carries", "wide", "one_mode",
          "low_floor", "same_mode", "own_formula", "carried", "line_fails", "structure", "mid_height", "joint",
-         "unchecked"),
+         "unchecked", "below_target", "ours_fails"),
         Effect.CONDITION,
     ),
     **dict.fromkeys(("long", "unsupported"), Effect.UNDECIDED),
@@ -88,7 +89,10 @@ def of_site(ground: SiteGround, directions: Collection[ItalianVerified], given_F
         by_displacement = {state for each in directions for state in each.by_displacement}
         limited = _capacities(rule.state for rule in RULES)
         remarks.append(Remark("seats", {"limited": limited, "seats": seats}, sorted(by_displacement)))
-    return remarks + _of_mechanism(next(iter(directions)).chain.mechanism)
+    mechanism = next(iter(directions)).chain.mechanism
+    if mechanism.crushing is None and not mechanism.strength:
+        remarks.append(Remark.of("unlimited"))
+    return remarks + _of_mechanism(mechanism)
 
 
 def _mending_confidence(chain: Chain) -> Remark:
@@ -241,7 +245,7 @@ def _of_ties(curve: ExactCurve, states: Mapping[str, LimitState], moved: Sequenc
 def _of_anchorages(curve: ExactCurve, moved: Mapping[str, float]) -> Iterator[Remark]:
     """Yield each tie whose anchorages give way before its bars yield, where it counts longer than elastic bars are."""
     mechanism = curve.chain.mechanism
-    for tie in [tie for tie in mechanism.ties or [] if tie.is_steel and tie.elongation is None]:
+    for tie in [tie for tie in mechanism.ties or [] if tie.is_steel]:
         count, strength = tie.number_of_bars(mechanism.depth), strengths(mechanism)[tie.name]
         stretch = strength.force / (count * tie.k)
         held = {state: next(pull for pull in pulls(curve, d) if pull.name == tie.name) for state, d in moved.items()}
@@ -313,8 +317,20 @@ def _of_break(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remar
         key = "torn" if lost.name == INTERLOCK_NAME else "tie_ends"
         remarks.append(Remark.of(key, name=lost.name, d=curve.displacement_at(lost.phi), e=lost.length))
     if states["SLV"].by == BREAK:
-        remarks.append(Remark.of("ends"))
+        ties = elongations(curve)
+        remarks.append(Remark("tie_limits", {"ties": ties}, ["SLV"]) if ties else Remark.of("ends"))
     return remarks
+
+
+def elongations(curve: ExactCurve) -> list[Remark]:
+    """Return the ties that end before a* vanishes, each with its `elongation` and that with which d_SLV goes on."""
+    d = min(d for by, d in ends(curve, RULES[0]).items() if by != BREAK)
+    lost, known = {each.name for each in curve.lost}, {tie.name: tie for tie in curve.chain.mechanism.ties or []}
+    return [
+        Remark.of("tie_ends_at", name=pull.name, held=known[pull.name].elongation or MAX_STRAIN,
+                  needed=ceil(1e3 * pull.strain) / 1e3)
+        for pull in pulls(curve, d) if pull.name in lost and pull.strain is not None
+    ]  # fmt: skip
 
 
 def _of_seat(curve: ExactCurve, states: Mapping[str, LimitState]) -> list[Remark]:

@@ -14,7 +14,7 @@ from rocking_cli.core import Direction
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.conclusion import Concluded, Conclusion, LeftOut, worst
 from rocking_cli.verification import results as frame
-from rocking_cli.verification.results import CAPACITY_TOLERANCE, MotionPlace, Requirement
+from rocking_cli.verification.results import CAPACITY_TOLERANCE, MotionPlace, Remark, Requirement
 
 if TYPE_CHECKING:
     from rocking_cli.dynamics.history import History
@@ -100,6 +100,8 @@ class RecordPeak:
         Time until which the history is known [s]; None if all of it is known.
     scale_factor : float
         Factor on the accelerations of the file.
+    why : Remark or None
+        Why the outcome with FC, or else that without, is not known longer; None if all of it is known.
     history : History, optional
         The history with FC that has the peak `with_confidence`, in the time of `dynamic.with_confidence`.
     """
@@ -110,6 +112,7 @@ class RecordPeak:
     known_to_with_confidence: float | None = None
     known_to_without: float | None = None
     scale_factor: float = 1.0
+    why: Remark | None = None
     history: History | None = field(default=None, compare=False)
 
     def peak(self, *, confident: bool) -> float | None:

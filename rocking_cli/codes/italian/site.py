@@ -25,6 +25,7 @@ from rocking_cli.verification.code import Site
 GROUND_PARAMETERS = ("ag", "F0", "TC", "S")
 ROCK_PARAMETERS = ("ag", "F0", "TC_star")
 COORDINATES = ("longitude", "latitude", "grid")
+INSTEAD_OF_GRID = "`hazard`, rows of return periods, or `ag, F0, TC_star`"
 MAX_TABLE_ROWS = 10_000
 MIN_PERIOD = 0.001  # s
 MIN_REFERENCE_LIFE = 35.0  # years
@@ -272,7 +273,7 @@ class ItalianSite(StateGround, Site):
             return self
         path = folder / self.grid
         if not path.is_file():
-            hint = "a relative path is one from the folder of the site file"
+            hint = f"give its path from the folder of the site file, or instead {INSTEAD_OF_GRID}"
             raise InputError(Problem(f"names no file: {path}", field="grid", hint=hint))
         cell = read_grid(path).cell(self.longitude, self.latitude)
         located = self.model_copy(update={"hazard": cell.rows})
@@ -367,7 +368,7 @@ class ItalianSite(StateGround, Site):
             yield (name,), f"cannot be combined with {source}, from which the ground is computed: give one of the two"
         for name in COORDINATES if source == "grid" else ():
             if not there(name):
-                yield (name,), f"is missing: a site by coordinates has {', '.join(COORDINATES)}"
+                yield (name,), f"is missing: give {', '.join(COORDINATES)}; or instead {INSTEAD_OF_GRID}"
 
     @classmethod
     def _on_rock(cls, given: dict[str, Any]) -> dict[str, dict[str, Any]]:

@@ -223,8 +223,9 @@ class Tie(Described):
     )
     wall: BearingWall | None = Field(None, description="masonry that the anchor plates bear on")
     elongation: float | None = quantity(
-        "elongation over its length up to which it is known to hold with its anchorages, such as that of its steel at "
-        "its greatest force where the steel yields first; if omitted, 0.02", example=0.05, default=None, gt=0, le=0.5,
+        "elongation over its length up to which it is known to hold, such as that of its steel at its greatest force; "
+        "of anchorages that give way before the bars yield it says nothing; if omitted, 0.02",
+        example=0.05, default=None, gt=0, le=0.5,
     )  # fmt: skip
     only: Literal["tension", "compression"] | None = Field(None, description="the one sense in which it can act")
     each: bool = Field(False, description="whether each of several bodies that move alike has one")

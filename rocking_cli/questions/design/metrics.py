@@ -158,15 +158,19 @@ def _lacks_ties(structure: Structure) -> str | None:
     return None if structure.mechanism.hung.ties else "requires a tie, and the structure has none: add it to `ties`"
 
 
-def required(structure: Structure, site: SiteFile) -> float:
-    """Return the one ratio that a code requires after a change of a structure. Raises `InputError` if there is none."""
+def required(structure: Structure, site: SiteFile) -> tuple[float, float | None]:
+    """Return the one ratio that a code requires after a change of a structure, and that before if it depends on it.
+
+    Raises `InputError` if there is no such ratio.
+    """
     existing = verify(structure, site)
     after = code_of(site).strengthened(existing, existing, site.site).strengthened
     levels = {check.state: check.required or 0.0 for side in after.directions.values() for check in side.checks}
     if min(levels.values()) == 0 or len({*levels.values()}) > 1:
         each = ", ".join(f"{state} {level:.4g}" for state, level in levels.items())
         raise InputError(Problem(f"there is no one ratio that the code requires ({each}): give a number"))
-    return next(iter(levels.values()))
+    alone = [check.required for side in existing.directions.values() for check in side.checks]
+    return next(iter(levels.values())), existing.ratio if None in alone else None
 
 
 METRICS: Mapping[str, Metric] = {

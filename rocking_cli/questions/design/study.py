@@ -198,6 +198,8 @@ class Design:
         Bars of steel, if the field varies the force of a tie and the answer is the least that meets the requirement.
     limits : sequence of Limit
         What limits the verification at `decisive`, see `Verification`.
+    before : float or None
+        The ratio of the structure as given, if what is required after an intervention depends on it.
     """
 
     structure: str
@@ -218,6 +220,7 @@ class Design:
     steel: SteelAnswer | None = None
     limits: Sequence[Limit] = ()
     depth_governs: Sequence[tuple[float, float]] = ()
+    before: float | None = None
 
     @property
     def decisive(self) -> float:
@@ -297,14 +300,15 @@ def design(
     An unknown outcome meets no requirement: it counts as overturning if the metric must be small, and the metric does
     not exist if it must be large.
     """
-    site = excitation.site if aim.metric.sited else None
+    site, before = excitation.site if aim.metric.sited else None, None
     if site is not None:
         if aim.metric.codes and site.site.code not in aim.metric.codes:
             codes = " and ".join(aim.metric.codes)
             message = f"{aim.metric.name} is a number of {codes}, but the site is for {site.site.code}"
             raise InputError(Problem(message, hint="every code has a `ratio`"))
         if isnan(aim.level):
-            aim = replace(aim, level=required(structure, site))
+            level, before = required(structure, site)
+            aim = replace(aim, level=level)
     _check_has_metric(structure, field, span, aim.metric)
 
     @cache  # edges are searched from values of the scan
@@ -360,6 +364,7 @@ def design(
         ),
         _limits(structure, field, _closest(values, numbers, aim.level) if value is None else value, site),
         _ranges(values, [*map(turned, values.tolist())], turns),
+        before,
     )  # fmt: skip
 
 

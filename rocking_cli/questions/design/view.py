@@ -21,16 +21,20 @@ from rocking_cli.views.column import Column, frame_of, only_shown, table_of
 from rocking_cli.views.conclusion import NEXT_STEPS, conclusion_data, not_counted, reasons_of, replaced_in_words
 from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.sheet.language import ENGLISH
-from rocking_cli.views.verdict import unchecked
+from rocking_cli.views.verdict import INVALID_REASON, unchecked
 from rocking_cli.views.view import ABSENT, View
 
+REQUIRED_AFTER = (
+    "What is required, {:.4g}, is by the intervention of the site, with the file as given as before it ({:.4g})."
+)
 MAX_SCAN_ROWS = 11  # values of the scan that the table lists
 
 
 def view(found: Design, excitation: Excitation) -> View:
     """Show the answer in a sentence, the scan, and remarks."""
     title = f"{found.structure}: {found.field} for {found.aim}"
-    first = " ".join(filter(None, [f"{title}. {_verdict(found)}", *in_steel(found), *limited(found)]))
+    of = "" if found.before is None else REQUIRED_AFTER.format(found.aim.level, found.before)
+    first = " ".join(filter(None, [f"{title}. {_verdict(found)}", of, *in_steel(found), *limited(found)]))
     count = len(found.values)
     some = np.unique(np.linspace(0, count - 1, min(MAX_SCAN_ROWS, count)).round().astype(int))
     scan = table_of("", _columns(found), some.tolist())
@@ -222,7 +226,7 @@ def _not_known(found: Design) -> Iterator[str]:
         count = "so the requirement is not met there" if found.aim.wants_more else count
         yield (
             f"At {len(some)} of the {len(found.values)} values, up to {percent(max(some))} of the neighbouring motions "
-            f"have an unknown outcome, as a joint opens or slides that the model keeps closed: {count}."
+            f"have an unknown outcome, as {INVALID_REASON}: {count}."
         )
     if None in shares:
         yield unchecked()

@@ -14,11 +14,12 @@ from statistics import NormalDist
 import numpy as np
 
 from rocking_cli.arrays import Reals
+from rocking_cli.dynamics.history import History
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.conclusion import LEAST_SHARE, Conclusion, NeighbourShare
-from rocking_cli.studies.engines import EngineName
+from rocking_cli.studies.engines import EngineName, follow
 from rocking_cli.studies.fit import wilson
 from rocking_cli.studies.neighbours import Conditions, Draws, Neighbourhood, least_uplift, simulate_neighbours
 from rocking_cli.studies.response import concluded, histories
@@ -100,6 +101,12 @@ class Margin:
         quantile = NormalDist().inv_cdf(0.95)
         (low, _), (_, high) = (wilson(each, self.around.count, quantile) for each in (self.overturned, self.at_most))
         return low, high
+
+    @property
+    def known_to(self) -> float | None:
+        """The largest factor up to which all outcomes are known; None if that is at no factor, or at all of them."""
+        first = np.flatnonzero(self.unknown > 0)[:1]
+        return float(self.factors[first[0] - 1]) if first.any() else None
 
     def first(self, level: float, *, unknown: bool = False) -> float | None:
         """Return the least factor at which a share `level` overturns (or is unknown); None without one."""
@@ -190,6 +197,19 @@ def margin(
         pga_g=motion.of_ground.pga_g, polarities=tuple(polarities),
         on_floor=motion.ground is not None,
     )  # fmt: skip
+
+
+def first_unknown(conditions: Conditions, motion: GroundMotion, found: Margin) -> History | None:
+    """Return the first history of unknown outcome of the structure itself, over the factors with unknown neighbours.
+
+    None if there is none, or if free blocks simulate the neighbours.
+    """
+    for factor in found.factors[found.unknown > 0].tolist() if conditions.engine == "exact" else ():
+        for sign in conditions.signs:
+            history = follow(conditions.structure, motion.scaled(sign * factor))
+            if history.unknown:
+                return history
+    return None
 
 
 def conclusion(conditions: Conditions, motion: GroundMotion, found: Margin) -> Conclusion:

@@ -10,9 +10,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rocking_cli.dynamics.history import History
 from rocking_cli.names import peaks_over, percent
 from rocking_cli.questions.margin.study import SHARE_LEVELS, Margin
-from rocking_cli.studies.conclusion import Conclusion
+from rocking_cli.studies.conclusion import LEAST_SHARE, Conclusion
 from rocking_cli.studies.neighbours import Conditions
 from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.column import Column, of, only_shown, rounded, table_of
@@ -20,7 +21,7 @@ from rocking_cli.views.conclusion import conclusion_data, of_margin
 from rocking_cli.views.engines import BLOCKS_FAILED, engines_in_words
 from rocking_cli.views.neighbours import deviations
 from rocking_cli.views.restitution import heading_of_run, restitution_data, restitution_used
-from rocking_cli.views.verdict import unchecked
+from rocking_cli.views.verdict import unchecked, why_unknown
 from rocking_cli.views.view import MAX_DETAILED_MOTIONS, Aside, Table, View, number
 
 PGA_HEAD = "PGA\n[g]"
@@ -32,12 +33,13 @@ LEVELS = (
 
 
 class MarginRow(NamedTuple):
-    """A motion: name, scale factor on the record as read, margin with this factor, and conclusion."""
+    """A motion: name, scale factor on the record, margin, conclusion, and the first history of unknown outcome."""
 
     name: str
     factor: float
     margin: Margin
     conclusion: Conclusion
+    unknown: History | None = None
 
 
 class _Line(NamedTuple):
@@ -53,7 +55,7 @@ class _Line(NamedTuple):
 
 def _lines(rows: Sequence[MarginRow]) -> Iterator[_Line]:
     """Yield the line that governs for each motion; if outcomes are unknown, also a line of those known to overturn."""
-    for name, _, margin, _ in rows:
+    for name, _, margin, *_ in rows:
         doubt = bool(margin.unknown.any())
         governing = f"{name}: {GOVERNING_ROW}" if doubt else name
         yield _Line(
@@ -93,7 +95,7 @@ def view(conditions: Conditions, rows: Sequence[MarginRow], end: Conclusion) -> 
     low, high = rows[0].margin.factors[[0, -1]]
     head = "PGA of\nground [g]" if rows[0].margin.on_floor else PGA_HEAD
     parts: list[Table | str] = [
-        f"{heading_of_run(structure)}. {of_margin(end, over)}",
+        f"{heading_of_run(structure)}. {of_margin(end, over, _where_known_ends(rows, end))}",
         f"Scale factors from {low:.2g} to {high:.2g} on {either}; at each, {around.count} neighbouring motions, "
         f"{deviations(around)}.",
         Aside(LEVELS),
@@ -107,12 +109,30 @@ def view(conditions: Conditions, rows: Sequence[MarginRow], end: Conclusion) -> 
     parts += [restitution_used(structure)] if structure.restitution is not None else []
     parts += engines_in_words(conditions.engine, by_blocks, mechanism, off_edge)
     for row in rows if len(rows) <= MAX_DETAILED_MOTIONS else []:
-        reached, *others = sentences(row.margin)
+        reached, *others = sentences(row.margin, row.unknown)
         parts += [Aside(f"{row.name}: {reached}"), *[f"{row.name}: {' '.join(others)}"] * bool(others)]
     parts += [f"Caution: {text}" for text in cautions_of(mechanism)]
     if not all(row.margin.checked for row in rows):
         parts.append(unchecked(why=mechanism.unchecked))
     return View(_data(conditions, rows) | {"conclusion": conclusion_data(end)}, parts)
+
+
+def _where_known_ends(rows: Sequence[MarginRow], end: Conclusion) -> str:
+    """Return that the factor of a conclusion is where knowledge ends, and why; empty if so many do overturn there."""
+    row = next(row for row in rows if row.name == end.motion)
+    if row.margin.first(LEAST_SHARE) == row.margin.first(LEAST_SHARE, unknown=True):
+        return ""
+    known = row.margin.known_to
+    up_to = "" if known is None else f"all outcomes are known up to a factor of {known:.3g}; "
+    from_there = f"from {end.ratio:.3g} on, {percent(LEAST_SHARE)} or more overturn or are unknown"
+    return f"Not a margin to overturning: {up_to}{from_there}, as {_why(row.margin, row.unknown)}."
+
+
+def _why(found: Margin, unknown: History | None) -> str:
+    """Return why outcomes are unknown, a clause: what ends the first such history of the structure itself."""
+    if found.engine != "exact":
+        return BLOCKS_FAILED
+    return (why_unknown(unknown) if unknown else None) or "the model no longer holds (see `rocking respond`)"
 
 
 def _data(conditions: Conditions, rows: Sequence[MarginRow]) -> dict[str, Any]:
@@ -132,7 +152,7 @@ def _data(conditions: Conditions, rows: Sequence[MarginRow]) -> dict[str, Any]:
                 "pga_g": row.margin.pga_g,
                 "conclusion": conclusion_data(row.conclusion),
                 **margin_data(row.margin),
-                "verdict": in_words(row.margin),
+                "verdict": " ".join(sentences(row.margin, row.unknown)),
             }
             for row in rows
         ],
@@ -167,10 +187,10 @@ def in_words(found: Margin) -> str:
     return " ".join(sentences(found))
 
 
-def sentences(found: Margin) -> list[str]:
+def sentences(found: Margin, unknown: History | None = None) -> list[str]:
     """Return a few sentences on a margin; the first one, which has the factors of the table, governs.
 
-    In it, unknown outcomes count as overturning.
+    In it, unknown outcomes count as overturning; `unknown` is the first history of unknown outcome.
     """
     doubt = bool(found.unknown.any())
     at = partial(_at, found.pga_g)
@@ -179,9 +199,9 @@ def sentences(found: Margin) -> list[str]:
     if not doubt:
         return reached
     first = float(found.factors[(found.unknown > 0).argmax()])
-    why = "the model no longer holds (see `rocking respond`)" if found.engine == "exact" else BLOCKS_FAILED
     reached.append(
-        f"From a factor of {at(first)} on, some outcomes are unknown, as {why}: there, the structure may overturn."
+        f"From a factor of {at(first)} on, some outcomes are unknown, as {_why(found, unknown)}: there, the structure "
+        "may overturn."
     )
     known = [
         f"{percent(level)} from {at(least)}" for level in SHARE_LEVELS if (least := found.first(level)) is not None

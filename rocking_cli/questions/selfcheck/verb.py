@@ -83,4 +83,4 @@ def _sentences(found: study.SelfCheck) -> Iterator[str]:
         passed = total - len(found.not_run)
         yield f"{passed} of {total} checks passed in {found.seconds:.1f} s, {len(found.not_run)} could not be run."
     else:
-        yield f"All {total} checks passed in {found.seconds:.1f} s."
+        yield f"All {total} checks passed in {found.seconds:.1f} s: of arithmetic, not of your files or a code."

@@ -70,12 +70,13 @@ class VerifyAsked(OfStructure, AtSite, MaybeUnderMotions, ForRecords, OfJoints, 
 
     With --record (repeatable), the dynamic method is added: time histories on the capacity curve, with and without the
     confidence factor; with --polarity both, the worse of the two polarities governs. A record whose outcome is unknown,
-    because a joint opens or slides that the model keeps closed, does not pass. A set of records belongs to one limit
-    state, given by --state, and is checked against it alone. For several limit states, give each its own set, as
-    --set SLV=PLACE --set SLC=PLACE. If the site has a floor, ground motions are carried to it, unless --on-floor states
-    that they are motions of the floor. Whether the records match the spectrum of the site is not checked; the sheet
-    draws both. With --strengthened, a second structure is verified too, and both are compared side by side. --sheet
-    writes the calculation sheet for submission: every formula with its numbers, in English or Italian.
+    because a joint opens or slides that the model keeps closed or a tie yields, does not pass. A set of records belongs
+    to one limit state, given by --state, and is checked against it alone. For several limit states, give each its own
+    set, as --set SLV=PLACE --set SLC=PLACE. If the site has a floor, ground motions are carried to it, unless
+    --on-floor states that they are motions of the floor. If the mean spectrum of the records is below that of the site
+    at the period that decides, this is a condition; the sheet draws both. With --strengthened, a second structure is
+    verified too, and both are compared side by side. --sheet writes the calculation sheet for submission: every formula
+    with its numbers, in English or Italian.
 
     Without FILE, the command uses rocking.yaml of this folder, or else a block of 0.7 m x 2.8 m.
 

@@ -358,3 +358,24 @@ def test_each_of_several_motions_is_named_with_its_pga_and_uplift_below(narrow):
     below = [each.get_text() for key in figure.legends for each in key.get_texts()]
     assert below == ["a.csv, PGA 0.4 g, uplift at 0.3", "b.csv, PGA 0.4 g"]
     assert not figure.axes[0].child_axes
+
+
+def test_where_a_tie_yields_the_factor_is_no_margin_to_overturning(tmp_path):
+    """Bare, it overturns from some factor on; tied, nothing is known once the bar yields."""
+    wall = "mechanism: block\nname: w\nwidth: 0.55\nheight: 7.2\ndensity: 1900\ndepth: 5\none_sided: positive\n"
+    wall += "rebound: 0.4\n"
+    tie = "ties:\n- {name: bar, from: {ground: [-5, 7]}, to: {at: [-0.275, 7]}, bars: 1, diameter: 0.018,\n"
+    tie += "   steel: S235}\n"
+    said = {}
+    for name, text in (("bare", wall), ("tied", wall + tie)):
+        (tmp_path / "w.yaml").write_text(text)
+        asked = ("margin", str(tmp_path / "w.yaml"), "--pulse", "sine:0.3g:1.5s", "--neighbours", "10")
+        said[name] = " ".join(run(*asked).stdout.split())
+        verdict = run_json(*asked)["motions"][0]
+    assert "smallest factor at which 10 % or more may overturn" in said["bare"] and "Not a margin" not in said["bare"]
+    assert "may overturn is" not in said["tied"]
+    known, ends = (float(each) for each in re.search(
+        r"Not a margin to overturning: all outcomes are known up to a factor of ([\d.]+); from ([\d.]+) on, 10 % or "
+        r"more overturn or are unknown, as the tie bar yields", said["tied"]).groups())  # fmt: skip
+    unknown = np.array(verdict["unknown"])
+    assert known == pytest.approx(verdict["factors"][int((unknown > 0).argmax()) - 1], rel=5e-3) and known < ends

@@ -78,7 +78,14 @@ def test_the_capacity_ends_where_the_tie_is_known_to_hold(count, strain):
     assert slc.a == pytest.approx(a_star(found.exact.rotation(slc.d)))  # without the bars
     assert found.a0 == pytest.approx((W * 0.3 + count * N * AT) / (W * 4) * G / FC)
     assert remarks(found)["tie_ends"] == {"name": "c", "d": pytest.approx(d), "e": (strain or 0.02) * 4.7}
-    assert "ends" in remarks(found) and "wide" not in remarks(found)
+    assert "wide" not in remarks(found)
+    (said,) = remarks(found)["tie_limits"]["ties"]
+    needed = longer(brentq(lambda phi: moved(phi) - 0.4 * moved(BARE), 0.0, 0.2, xtol=1e-15), 4.7) / 4.7
+    assert said.values["held"] == (strain or 0.02) and 0 <= said.values["needed"] - needed < 1e-3
+    assert f"while the wall could go on to {said.values['needed']:.3g}" in rk.verify(
+        wall(bar(bars=count, elongation=strain)), SITE).sentences[0]  # fmt: skip
+    longer_held = verified(wall(bar(bars=count, elongation=said.values["needed"])))
+    assert longer_held.states["SLV"].by == "share" and longer_held.states["SLV"].d == pytest.approx(0.4 * moved(BARE))
     places = np.linspace(0.0, ends, 65)
     assert found.exact.largest == pytest.approx(max(a_star(places, count * N)), rel=1e-3)
 
@@ -132,6 +139,10 @@ def test_a_weak_tie_makes_no_wall_worse():
     assert strong.conclusion.ratio > bare.conclusion.ratio
     said = remarks(tied.directions[PLUS])["stronger_without"]
     assert said["names"] == ["c"] and said["ratio"] < bare.conclusion.ratio
+    needed = said["ties"][0].values["needed"]
+    assert f"could go on to {needed:.3g}" in tied.sentences[0] and "Not counted: the tie c" in tied.sentences[0]
+    enough = rk.verify(wall(bar(diameter=0.012, elongation=needed)), SITE)
+    assert enough.conclusion.ratio > bare.conclusion.ratio and not remarks(enough.directions[PLUS]).get("tie_limits")
     assert "stronger_without" not in remarks(strong.directions[PLUS])
 
 
@@ -180,7 +191,8 @@ WEAK = {"plate": {"width": 0.3, "height": 0.3, "thickness": 0.05}, "wall": {"thi
     (2e4, 12.0, {}, True),
     (2e5, 12.0, {}, False),  # the bar yields first
     (2e4, 4000.0, {}, False),  # elastic bars stretch further
-    (2e4, 12.0, {"elongation": 0.02}, False),  # it says how far the anchorages hold
+    (2e4, 12.0, {"elongation": 0.02}, True),  # a number of the bar says nothing of the wall that is punched
+    (2e4, 12.0, {"elongation": 0.5}, True),
 ])  # fmt: skip
 def test_how_far_anchorages_hold_that_give_way_first_is_a_condition(shear, length, more, is_one):
     """Punching of a cone at 45 degrees, by hand; the bar stretches N L/(E A), and its anchorages by the rest."""

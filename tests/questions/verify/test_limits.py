@@ -28,11 +28,13 @@ NOTHING = {
     "by_grid", "on_node", "between_nodes", "short_life", "rows", "row", "without_state", "bound", "at_rest", "missing",
     "same_mode_further",
     # conservative, or our choice where the code is silent, of no effect on what decides
+    # an assumption that has no field in some mechanisms: the terminal and the sheet state it
+    "unlimited",
     "no_soil", "floor", "linear_SLV", "line", "elastic", "ties", "control", "control_a_g", "control_same",
     # the capacity ends there already
     "seat", "torn", "ends",
     # numbers beside `unsupported`, `onset_alone` and `wide`
-    "follows", "tie_ends", "stronger_without", "let_go", "plates_bend",
+    "follows", "tie_ends", "tie_ends_at", "let_go", "plates_bend",
     # by which rule limit states and zeta_E were chosen
     "rule_states", "rule_IV", "rule_IV_without_SLD", "rule_SLD", "rule_before", "rule_unknown", "no_class",
     "IV", "IV_without_SLD",
@@ -162,7 +164,8 @@ class TestKinds:
         assert rk.verify(of(tall), own).conclusion.concluded is Concluded.SATISFIED
         weak = [f"sine:0.0{k}g:0.5s" for k in range(1, 8)]
         by_records = rk.verify(of(tall), {**SITE, "ag": 0.12}, motions=weak).conclusion
-        assert by_records.concluded is Concluded.SATISFIED
+        assert by_records.concluded is Concluded.SATISFIED_IF
+        assert [each.key for each in by_records.limits] == ["below_target"]
         assert (by_records.method, len(by_records.motions)) == ("histories", 7)
         few = rk.verify(of(tall), {**SITE, "ag": 0.12}, motions=weak[:3]).conclusion
         assert few.concluded is Concluded.NOT_DECIDED
@@ -214,14 +217,38 @@ class TestKinds:
         found = verified({**WALL, "ties": [bar]}, ag=0.1)
         N = min(np.pi * 0.012**2 * 235e6 / 1.05, 2 * 0.6 * 1.8 * 5e4 / 2, 0.09 * 5e6 / 2)
         least = float(np.ceil(1e3 * np.sqrt(N / (2 * 235e6))))
-        assert keys(found) == ["plate_alone"] and found.conclusion.concluded is Concluded.SATISFIED_IF
+        assert keys(found) == ["plate_alone", "anchored", "tie_limits"]
+        assert found.conclusion.concluded is Concluded.SATISFIED_IF
         assert f"only if the plates of the tie bar are at least {least / 1e3:g} m thick" in found.sentences[0]
         for s, governs in ((least, "punching"), (least - 1, "bending")):
             known = {**bar, "plate": {**plate, "thickness": s / 1e3, "gamma": 1.0}}
             mended = verified({**WALL, "ties": [known]}, ag=0.1)
-            assert keys(mended) == [] and mended.conclusion.concluded is Concluded.SATISFIED
+            assert keys(mended) == ["anchored", "tie_limits"]
             ties = mended.to_dict()["directions"]["positive"]["ties"]
             assert ties["bar"]["strength_governs"] == governs
+
+    def test_strength_is_said_to_be_unlimited_unless_it_is_given(self):
+        for more, said in (
+            ({}, True),
+            ({"loads": [{**ROOF, "seat": None}]}, True),
+            ({"crushing": {"strength": 1e6}}, False),
+        ):
+            assert (
+                "The compressive strength is taken as unlimited" in " ".join(verified({**WALL, **more}).sentences)
+            ) == said
+
+    def test_a_reading_of_sliding_floors_that_fails_is_a_condition_of_the_letter_that_passes(self):
+        wall = {**WALL, "loads": [{**ROOF, "mass": 12000.0, "floor": "sliding"}]}
+        letter = verified(wall, ag=0.15)
+        (ours,) = [each.values["ratio"] for each in letter.conclusion.limits if each.key == "letter"]
+        assert ours < letter.ratio
+        for share, fails in ((0.99, False), (1.01, True)):
+            found = verified(wall, ag=0.15 * ours * share)
+            assert ("ours_fails" in keys(found)) == fails and found.ratio > 1
+            assert found.conclusion.concluded is (Concluded.SATISFIED_IF if fails else Concluded.SATISFIED)
+        assert "by our reading, capacity over demand is 0.9" in found.sentences[0]
+        upgraded = rk.verify(of(wall), {**SITE, "ag": 0.15 * ours * 1.01, "intervention": "upgrading", "case": "c"})
+        assert "ours_fails" not in keys(upgraded)
 
     def test_a_wall_between_floors_that_are_not_given_is_one_on_the_ground(self, tmp_path):
         wall = {"mechanism": "spanning_wall", "name": "w", "thickness": 0.5, "height": 3.0, "density": 1800.0}
@@ -257,11 +284,11 @@ class TestKinds:
         said = "on the straight line, which the code also allows, zeta_E is {:.3g} at SLV, which fails"
         for share, expected in ((0.99, []), (1.02, ["line_fails"])):
             found = rk.verify(of(wall), {**site, "ag": float(share * ag)})
-            assert keys(found) == expected and found.ratio > 1.05
+            assert keys(found) == [*expected, "anchored"] and found.ratio > 1.05
         assert said.format(1 / 1.02) in found.sentences[0]
         for share, expected in ((1.02, []), (1.27, ["line_fails"])):  # zeta_E of 0.8 is enough
             upgraded = {"intervention": "upgrading", "case": "c", "ag": float(share * ag)}
-            assert keys(rk.verify(of(wall), {**site, **upgraded})) == expected
+            assert keys(rk.verify(of(wall), {**site, **upgraded})) == [*expected, "anchored"]
 
 
 def structures():

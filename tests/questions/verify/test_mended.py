@@ -96,6 +96,19 @@ def state_sources(structure, site, values):
             part["source"] = "a test"
 
 
+def strengthen_anchorage(structure, site, values):
+    """Thicker plates on stronger masonry, with which the bars yield first."""
+    for tie in entries(structure, [values["name"]], "ties"):
+        tie["plate"]["thickness"] = 0.2
+        tie["wall"].update({"shear": 1e6, "compression": 2e7})
+
+
+def lengthen(structure, site, values):
+    for each in values["ties"]:
+        for tie in entries(structure, [each.values["name"]], "ties"):
+            tie["elongation"] = each.values["needed"]
+
+
 def thicken(structure, site, values):
     for tie in entries(structure, [values["name"]], "ties"):
         tie["plate"]["thickness"] = values["least"]
@@ -126,7 +139,9 @@ MENDS = {
     "sources": state_sources,
     "strength_alone": anchor,
     "plate_alone": thicken,
-    "anchored": lambda structure, site, values: structure["ties"][0].update({"elongation": 0.02}),
+    "anchored": strengthen_anchorage,
+    "stronger_without": lengthen,
+    "tie_limits": lengthen,
     "carries": lambda structure, site, values: to_steel(structure, [values["name"]]),
     "wide": lambda structure, site, values: structure["ties"][0].update({"elongation": 0.001}),
     "one_mode": own_spectrum,  # of the floor, with all modes of the building
@@ -147,6 +162,8 @@ NO_FIELD = {
     "carried": "weights among the fields of a mechanism that move sideways with less than their mass: of plugins",
     "line_fails": "a reading of the code, which allows the exact curve and the straight line",
     "joint": "nothing in an assembly holds one of its joints closed",
+    "below_target": "records: others, or a larger factor, are to be chosen",
+    "ours_fails": "a reading of the code, which its letter does not follow",
     "bonded": "no friction is sufficient, so that the other mechanism is the one to describe",
 }
 """Why no field of a file mends what a remark says."""
@@ -198,4 +215,6 @@ def test_files_with_each_condition_mended_are_satisfied_plainly(key):
     structure, site = ELSEWHERE[key]
     key = key.partition(" ")[0]
     seen, end = mended(structure, site, key, WEAK if key == "unchecked" else ())
-    assert seen[0] == key and end.concluded is Concluded.SATISFIED and end.limits == []
+    weak = ["below_target"] * (key == "unchecked")  # the motions that uplift no frame
+    assert seen[0] == key and [each.key for each in end.limits] == weak
+    assert end.concluded is (Concluded.SATISFIED_IF if weak else Concluded.SATISFIED)

@@ -188,7 +188,7 @@ WRONG = [
     (TABLE + "SLV: {ag: 0.2, F0: 2.5, TC_star: 0.3}\n", 6, "SLV", "cannot be combined with hazard", None),
     (TABLE + "TC_star: 0.3\n", 6, "TC_star", "cannot be combined with hazard", None),
     (TABLE + "longitude: 13\n", 6, "longitude", "cannot be combined with hazard", None),
-    ("FC: 1\nsoil: B\nVN: 50\nCU: 1\nlongitude: 13\ngrid: g.csv\n", 1, "latitude", "a site by coordinates has", None),
+    ("FC: 1\nsoil: B\nVN: 50\nCU: 1\nlongitude: 13\ngrid: g.csv\n", 1, "latitude", "instead `hazard`", None),
     ("FC: 1\nsoil: B\nVN: 50\nCU: 1\nlongitude: 190\n", 5, "longitude", "must be at most 180 deg, got 190", None),
 ]  # fmt: skip
 

@@ -83,6 +83,11 @@ def test_the_sheet_has_both_files_and_workings(files, language):
     assert all(each in page for each in wanted)
 
 
+def test_the_name_stands_apart_from_its_state_in_italian(files):
+    said = run(*files, "--language", "it").stdout
+    assert "Stato di fatto: facade" in said and "Stato di progetto: strong" in said
+
+
 def test_in_python_and_as_a_frame():
     old, new = (parse_structure(text, "s.yaml", "test", Registry()) for text in (FACADE, FACADE + "mass: 1000\n"))
     answer = rk.verify(old, yaml.safe_load(HAZARD), strengthened=new)

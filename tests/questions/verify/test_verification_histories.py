@@ -119,6 +119,35 @@ def seen(*pairs, d0=0.3, state="SLV"):
     return Dynamic(state, records, d0, ALLOWED[state], 7)
 
 
+def test_records_whose_mean_is_below_the_spectrum_of_the_site_are_a_condition():
+    """Sa of seven pulses at T_SLV, by an oscillator, over that of the site by the formula of its last branches."""
+    site = {"FC": 1.35, "ag": 0.1, "F0": 2.5, "TC": 0.4, "S": 1.2}
+    T = rk.verify(FACADE, site).directions[Direction.POSITIVE].states["SLV"].T
+    fall = min(1.0, (4 * 0.1 + 1.6) / T)
+    target = 0.1 * 1.2 * 2.5 * 0.4 / T * fall
+    pulses = [f"sine:{0.03 + k / 1000}g:0.9s" for k in range(7)]
+    own = [float(rk.response_spectrum(rk.parse_pulse(each).sampled(), periods=[T]).sa[0]) for each in pulses]
+    share = np.mean(own) / target
+    for factor, is_one in ((0.89 / share, True), (0.91 / share, False)):
+        scaled = [f"sine:{factor * (0.03 + k / 1000)}g:0.9s" for k in range(7)]
+        found = rk.verify(FACADE, site, motions=scaled)
+        told = {each.key: each for each in found.remarks if hasattr(each, "key")}
+        assert ("below_target" in told) == is_one
+    few = rk.verify(FACADE, site, motions=pulses[:6])
+    assert all(getattr(each, "key", "") != "below_target" for each in few.remarks)
+
+
+def test_a_tie_that_yields_is_the_reason_why_an_outcome_is_unknown():
+    tie = {"name": "bar", "from": {"ground": [-5, 7.5]}, "to": {"at": [-B, 7.5]}, "bars": 1, "diameter": 0.01,
+           "steel": "S235"}  # fmt: skip
+    tied = rk.Block(name="w", width=2 * B, height=2 * H, density=1800, depth=5, one_sided="positive", rebound=0.4,
+                    ties=[tie])  # fmt: skip
+    site = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
+    found = rk.verify(tied, site, motions="sine:0.4g:1s", polarity="-1")
+    said = " ".join(found.sentences)
+    assert "as the tie bar reaches its strength" in said and "joint opens" not in said
+
+
 class TestVerdicts:
     def test_the_mean_counts_and_no_record_may_pass(self):
         found = seen((0.10, 0.05), (0.13, 0.05))

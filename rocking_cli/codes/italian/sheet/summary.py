@@ -40,6 +40,9 @@ def context(say: Language, verification: ItalianVerification, sides: Sequence[Di
     ]  # fmt: skip
     remarks = [*(each for side in sides for each in side.found.remarks), *verification.remarks]
     only = next((each for each in remarks if isinstance(each, Remark) and each.key == "bends"), Remark.of("only_this"))
+    remarks = [
+        each for each in remarks if not (isinstance(each, Remark) and each.key == "unlimited")
+    ]  # is an assumption
     cautions = [each for each in remarks if isinstance(each, Remark) and each.key in CAUTIONS]
     general = say.caution(mechanism.mechanism, mechanism.caution) if mechanism.caution else ""
     particular = say.recognised("caution", mechanism.own_caution())
@@ -164,4 +167,6 @@ def _on_histories(say: Language, dynamic: Dynamic, *, confident: bool) -> Iterat
     if mean is not None:
         yield say("holds" if dynamic.holds(confident=confident) else "holds_not", **values)
     elif unknown:
-        yield say("unknown_fails", **values, names=", ".join(unknown), count=len(unknown))
+        every = [each.why or Remark.of("unknown_other") for each in dynamic.records if each.name in unknown]
+        why = list(dict.fromkeys(map(say, every)))
+        yield say("unknown_fails", **values, names=", ".join(unknown), count=len(unknown), why=why)
