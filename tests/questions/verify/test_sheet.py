@@ -463,7 +463,7 @@ def test_both_languages_say_the_same_and_every_remark(name):
 
     found, given = verified(*CASES[name])
     remarks = [each for side in found.distinct for each in (*differences(side, found.first), *side.remarks)]
-    remarks += found.remarks
+    remarks += [each for each in found.remarks if each.key != "unlimited"]  # it is an assumption of the sheet
     sheets = {language: parts_of(found, given, language) for language in ("en", "it")}
     english, italian = ([each for part in parts for each in skeleton(part)] for parts in sheets.values())
     assert english == italian and len(english) > 60
