@@ -12,6 +12,7 @@ from sphinx.application import Sphinx
 
 LONGEST = 12_000  # characters of a page that a phone shows whole
 SHELL = re.compile(r"(rocking|pip|pipx|uv|make|python|cd) ")  # starts of command lines, which may be broken
+CONTINUED = re.compile(rf"  (?!{SHELL.pattern})\S")  # a line that goes on with a sentence
 MORE = "Arguments, results, members"  # of a public name
 ALIGNED = re.compile(r"\S {2,}\S|─|^ +\S")  # what is in lines whose columns are aligned
 BLOCK = re.compile(
@@ -63,7 +64,7 @@ def _of_output(lines: list[str]) -> Iterator[str]:
             continue
         yield _table(table)
         table = []
-        while lines and re.match(r"  (?!%s)\S" % SHELL.pattern, lines[0]) and not ALIGNED.search(lines[0].strip()):
+        while lines and CONTINUED.match(lines[0]) and not ALIGNED.search(lines[0].strip()):
             line += " " + lines.pop(0).strip()
         yield f'<span class="sentence">{line}</span>'
     yield _table(table)

@@ -72,7 +72,9 @@ def test_the_caution_of_the_wall_is_shown_where_it_is_looked_up_and_used(tmp_pat
     assert "Unconservative without a load on top" in wall.caution
     assert json.loads(run("mechanisms", "wall", "--json").stdout)["caution"] == wall.caution
     assert wall.caution in flat(run("mechanisms", "wall").stdout)
-    assert wall.caution in flat(run("equiv", file, "--all").stdout) and run_json("equiv", file)["caution"] == wall.caution
+    assert (
+        wall.caution in flat(run("equiv", file, "--all").stdout) and run_json("equiv", file)["caution"] == wall.caution
+    )
     out = tmp_path / "r.html"
     run("report", file, "-o", out)
     assert wall.caution.replace("lambda", "λ") in flat(out.read_text(encoding="utf-8"))

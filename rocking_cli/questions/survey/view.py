@@ -368,7 +368,7 @@ def sentences(found: Survey, top: int | None = None, say: Language = ENGLISH) ->
     if held := [each for each in rows if each.any_friction and each.lambda_ > PLAIN_FRICTION]:
         lines.append(
             f"{_named(held)}: without {named('friction')} nothing slides, but to rock they need more than "
-            f"{PLAIN_FRICTION:g}, up to {number(max(each.lambda_ for each in held), 3)}: on a smoother floor they slide."
+            f"{PLAIN_FRICTION:g}, up to {number(max(each.lambda_ for each in held), 3)}: on smoother floors they slide."
         )
     if any(each.unprinted for each in rows):
         lines.append(
