@@ -135,14 +135,16 @@ class Block(SingleBody):
 
         A block is taken to be alone, and not a part of a wall, if it leans on nothing, has no ties and no interlock,
         carries nothing but masses (no floor, no force, no mass per metre of wall), and `plane` is not given. Its masses
-        are then above the middle of its depth. A wall given by the metre is at least as deep as it is thick, so that
+        are then above the middle of its depth; off the middle of its width, they may make this the weaker side. A wall given by the metre is at least as deep as it is thick, so that
         this never applies to it. With `crushing` the strip at its foot is known for the given side only.
         """
         if self.depth is None or not self.depth < self.width or not self.may_rock_about_depth():
             return None
         loads = self.loads or ()
         centred = [{**load.model_dump(exclude_unset=True), "at": [0.0, load.at[1]]} for load in loads]
-        return self.model_copy(update={"width": self.depth, "depth": self.width, "loads": centred or None})
+        turned = self.model_copy(update={"width": self.depth, "depth": self.width, "loads": centred or None})
+        aside = any(load.at[0] for load in loads)  # masses off the middle may make the width the weaker side
+        return None if aside and min(map(self.uplift, Direction)) <= min(map(turned.uplift, Direction)) else turned
 
     def may_rock_about_depth(self) -> bool:
         alone = self.plane is None and self.one_sided is None and not (self.ties or self.interlock or self.crushing)

@@ -175,8 +175,8 @@ class Plugins(Mapping[str, T]):
         return did_you_mean(name, list(self))
 
     def package_of(self, name: str) -> str:
-        """Return the distribution and version of a plugin."""
-        return ", ".join(package_of(point) for point in self._points[name])
+        """Return the distribution and version of a plugin; a class of a script has none."""
+        return ", ".join(package_of(point) for point in self._points.get(name, ())) or "no package"
 
     @staticmethod
     @abstractmethod

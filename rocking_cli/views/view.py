@@ -79,8 +79,9 @@ class View:
 
 
 def heading(mechanism: Mechanism) -> str:
-    """Return name and type of a structure, for a heading."""
-    return f"{mechanism.name}: {mechanism.title}"
+    """Return name and type of a structure, for a heading, and that it is not about its weaker side."""
+    side = "" if mechanism.weaker_side() is None else ", about its width though its depth is the weaker side"
+    return f"{mechanism.name}: {mechanism.title}{side}"
 
 
 def force_unit(mechanism: Mechanism) -> tuple[float, str]:

@@ -30,7 +30,7 @@ from tests.conftest import PROJECT
 pytestmark = pytest.mark.drawn
 
 DOCS = PROJECT / "docs"
-OWN = [PROJECT / "README.md", PROJECT / "CONTRIBUTING.md"]
+OWN = [PROJECT / "README.md", PROJECT / "CONTRIBUTING.md", PROJECT / "validation" / "README.md"]
 FOLDERS = ("", "api/", "mechanisms/")
 PAGES = sorted([*OWN, *(page for folder in FOLDERS for page in DOCS.glob(f"{folder}*.md"))])
 MECHANISMS = [name for name in Registry() if Registry().package_of(name).startswith("rocking-cli ")]

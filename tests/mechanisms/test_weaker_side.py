@@ -95,3 +95,13 @@ def test_a_bookcase_that_does_not_uplift_rocks_about_its_depth():
         for each in (bookcase, bookcase.weaker_side())
     )
     assert as_given.words == "does not uplift" and turned.peak_ratio == pytest.approx(0.57, abs=0.005)
+
+
+@pytest.mark.parametrize(("aside", "weaker"), [(0.05, True), (0.25, False)])
+def test_masses_off_the_middle_of_its_width_may_make_that_the_weaker_side(aside, weaker):
+    """By moments about the edge towards which the mass is moved, and about an edge of the depth."""
+    block = rk.Block(width=0.6, depth=0.4, height=0.1, mass=100.0, loads=[{**MASS, "at": [aside, 1.0]}])
+    about_width = (100 * 0.3 + 200 * (0.3 - aside)) / (100 * 0.05 + 200 * 1.0)
+    about_depth = (100 * 0.2 + 200 * 0.2) / (100 * 0.05 + 200 * 1.0)
+    assert (about_depth < about_width) == weaker == (block.weaker_side() is not None)
+    assert min(map(block.uplift, Direction)) == pytest.approx(about_width, rel=1e-12)

@@ -103,7 +103,7 @@ def context(content: Assessment, say: Language, verified: Verification | None = 
     steel = verified is not None and any(each.is_steel for each in mechanism.ties or [])
     strong = mechanism.at_strength() if steel else None
     why_alone = (structure.why_no_block or structure.misleading or "").removeprefix(f"{content.name}: ")
-    early = before_rocking(mechanism)
+    early = [mechanism.own_caution()] * (mechanism.weaker_side() is not None) + before_rocking(mechanism)
     steps = {key: guarded(f"{_capital(say.texts.get(f'next_{key}', text))}.") for key, text in NEXT_STEPS.items()}
     cautions = map(printed, cautions_of(mechanism)) if is_english else map(guarded, cautions_of(mechanism, say))
     return {
