@@ -37,7 +37,7 @@ class AsymmetricFrame(Mechanism):
     mechanism: ClassVar[str] = "asymmetric_frame"
     title: ClassVar[str] = "beam on two columns of different height"
     suits: ClassVar[str] = "bridge or portal on columns of different height"
-    source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Eqs. 26-38, with 27, 32, 33 and 37 corrected"
+    source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Eqs. 26-38, corrected"
     verified: ClassVar[str] = "Eqs. 32-34 and 38 written out (32, 33 corrected); the symmetric frame for equal columns"
 
     starter: ClassVar[tuple[str, ...]] = ("density", "depth")

@@ -135,8 +135,9 @@ class Block(SingleBody):
 
         A block is taken to be alone, and not a part of a wall, if it leans on nothing, has no ties and no interlock,
         carries nothing but masses (no floor, no force, no mass per metre of wall), and `plane` is not given. Its masses
-        are then above the middle of its depth; off the middle of its width, they may make this the weaker side. A wall given by the metre is at least as deep as it is thick, so that
-        this never applies to it. With `crushing` the strip at its foot is known for the given side only.
+        are then above the middle of its depth; off the middle of its width, they may make this the weaker side. A wall
+        given by the metre is at least as deep as it is thick, so that this never applies to it. With `crushing` the
+        strip at its foot is known for the given side only.
         """
         if self.depth is None or not self.depth < self.width or not self.may_rock_about_depth():
             return None

@@ -362,7 +362,9 @@ def sentences(found: Survey, top: int | None = None, say: Language = ENGLISH) ->
     cautioned = [(name, caution) for name, caution in cautions if caution is not None]
     lines += [say("Caution: {text}", text=f"{name}: {caution}") for name, caution in cautioned[:MAX_CAUTIONED]]
     if len(cautioned) > MAX_CAUTIONED:
-        lines.append(f"{len(cautioned) - MAX_CAUTIONED:,} more structures have such a caution: JSON and CSV list them all.")
+        lines.append(
+            f"{len(cautioned) - MAX_CAUTIONED:,} more structures have such a caution: JSON and CSV list them all."
+        )
     if unsized := [each for each in rows if each.width_alone]:
         lines.append(f"{_named(unsized)}: depth not given, so only the width was examined.")
     if held := [each for each in rows if each.any_friction and each.lambda_ > PLAIN_FRICTION]:
