@@ -168,7 +168,7 @@ docs: pages  ## The documentation as a site, out/site/index.html; every warning 
 
 docs-check: docs words  ## Both, and an error if `make pages` had to renew anything
 	git diff --exit-code --stat -- docs README.md rocking_cli/__init__.pyi
-	ROCKING_SITE=out/site $(BIN)/python -m pytest -q tests/house/test_site.py
+	ROCKING_SITE=out/site $(BIN)/python -m pytest -q -m docs tests/house/test_site.py tests/house/test_docs.py -k "test_site or every_command"
 
 words:  ## The words of the pages by topic, and an error if a topic has more than its number
 	$(PYTHON) docs/count_words.py
