@@ -26,6 +26,7 @@ from rocking_cli.questions.respond.asked import RespondEachAsked
 from rocking_cli.questions.respond.each import FAILED, OUTCOMES, RunGrid, columns, labelled_columns
 from rocking_cli.studies.fit import fractile
 from rocking_cli.views.column import long_name
+from rocking_cli.views.verdict import unchecked
 from rocking_cli.views.view import View
 
 if TYPE_CHECKING:
@@ -269,7 +270,9 @@ def _sentences(grid: RunGrid, model: ModelName, found: Outcomes, *, kept: bool) 
     many = f"By the {model} model {int(found.fell.sum())} of {found.fell.size} runs overturn"
     doubt = f", and the outcome of {int(found.unknown.sum())} is unknown" if found.unknown.any() else ""
     times = f"Their rotations are kept at {grid.time.size:,} times, until {grid.time[-1]:.4g} s." if kept else ""
-    return [f"{many}{doubt}.", times]
+    missing = np.isnan(found.opening) & ~found.failed & (model == "nonlinear")
+    several = [each for each, of_it in zip(grid.structures, missing, strict=True) if of_it.any()]
+    return [f"{many}{doubt}.", times, *(unchecked(each.name, each.mechanism.unchecked) for each in several)]
 
 
 def _data(outcomes: Mapping[ModelName, Outcomes]) -> dict[str, Any]:

@@ -78,6 +78,12 @@ def test_what_is_said_is_counted(answer):
     assert answer.share() == (fell / 48, (fell + unknown) / 48)
 
 
+def test_joints_that_are_not_checked_are_said_of_each_structure():
+    structures = [EXAMPLES / "curve.yaml", EXAMPLES / "block.yaml"]
+    said = rk.respond_each(structures, EXAMPLES / "accel.csv", model="nonlinear").sentences
+    assert [each.split(":")[1] for each in said if "are not checked" in each] == [" pushed facade"]
+
+
 def test_rotations_are_those_of_single_responses(answer):
     rotation = answer.rotation["nonlinear"]
     assert rotation.shape == (*answer["nonlinear"].peak_ratio.shape, answer.time.size)
