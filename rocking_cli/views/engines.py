@@ -58,11 +58,11 @@ def blocks_in_words(engine: EngineName, histories: str, friction: str, off_edge:
     """Yield which histories free blocks give, and how: their friction and falls, collapse and impacts, in words."""
     off = f" In {off_edge:,} of them, a block falls off an edge that the file draws: they count as overturned."
     others = "; one degree of freedom for all others" if engine == "auto" else ""
-    yield (f"Engine: free blocks (MuJoCo) for {histories}{others}. Their friction is {friction}.{off * (off_edge > 0)}")
-    yield Aside(
-        f"Overturning of free blocks is collapse: {COLLAPSE}. Impacts lose the energy that contact takes, whatever "
-        "restitution is given."
+    yield (
+        f"Engine: free blocks (MuJoCo) for {histories}{others}. Their friction is {friction}.{off * (off_edge > 0)} "
+        "Impacts lose the energy that contact takes, whatever restitution is given."
     )
+    yield Aside(f"Overturning of free blocks is collapse: {COLLAPSE}.")
 
 
 def cost_in_words(

@@ -133,5 +133,5 @@ def test_free_blocks_refuse_it_by_name_and_auto_says_what_they_do():
         assert "--restitution has no effect with free blocks" in refused
     found = run_json("respond", "--pulse", PULSE, block, "--restitution", ETA, "--engine", "auto")
     assert found["restitution"]["source"] == "run"
-    _, said = rk.views.engines.engines_in_words("auto", 1, STRUCTURES["block"])
+    said, _ = rk.views.engines.engines_in_words("auto", 1, STRUCTURES["block"])
     assert "Impacts lose the energy that contact takes, whatever restitution is given." in said

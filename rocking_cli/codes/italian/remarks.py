@@ -329,7 +329,8 @@ def elongations(curve: ExactCurve) -> list[Remark]:
     return [
         Remark.of("tie_ends_at", name=pull.name, held=known[pull.name].elongation or MAX_STRAIN,
                   needed=ceil(1e3 * pull.strain) / 1e3)
-        for pull in pulls(curve, d) if pull.name in lost and pull.strain is not None
+        for pull in pulls(curve, d)
+        if pull.name in lost and pull.strain is not None and pull.strain > (known[pull.name].elongation or MAX_STRAIN)
     ]  # fmt: skip
 
 

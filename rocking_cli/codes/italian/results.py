@@ -341,7 +341,8 @@ class ItalianVerified(frame.Verified):
         for each in histories.values():
             required = self.required.get(each.state, 1.0)
             fails = each.concluded is not Concluded.SATISFIED
-            is_open = required is None or required > 1 or (fails and required < 1)
+            known = each.concluded is not Concluded.UNKNOWN
+            is_open = known and (required is None or required > 1 or (fails and required < 1))
             checks.append(each._replace(concluded=Concluded.NOT_DECIDED) if is_open else each)
         return checks
 

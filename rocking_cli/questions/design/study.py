@@ -307,7 +307,7 @@ def design(
             message = f"{aim.metric.name} is a number of {codes}, but the site is for {site.site.code}"
             raise InputError(Problem(message, hint="every code has a `ratio`"))
         if isnan(aim.level):
-            level, before = required(structure, site)
+            level, before = required(_by_weaker_side(structure), site)
             aim = replace(aim, level=level)
     _check_has_metric(structure, field, span, aim.metric)
 
@@ -404,16 +404,15 @@ def _closest(values: Reals, metric: Reals, level: float) -> float:
 def _limits(structure: Structure, field: str, value: float, site: SiteFile | None) -> Sequence[Limit]:
     """Return what limits the verification at a value; nothing without a site, or where it cannot be made."""
     try:
-        return () if site is None else verify(_varied(structure, field, value), site).limits
+        return () if site is None else verify(_by_weaker_side(structure.varied(field, value)), site).limits
     except (InputError, MechanismError):  # the reason is listed in `not_built`
         return ()
 
 
-def _varied(structure: Structure, field: str, value: float) -> Structure:
-    """Return the structure with another value of a field, as it rocks about the weaker side of its base."""
-    varied = structure.varied(field, value)
-    weaker = varied.mechanism.weaker_side()
-    return varied if weaker is None else structure.of(weaker)
+def _by_weaker_side(structure: Structure) -> Structure:
+    """Return the structure as it rocks about the weaker side of its base."""
+    weaker = structure.mechanism.weaker_side()
+    return structure if weaker is None else structure.of(weaker)
 
 
 def _at(
@@ -421,7 +420,7 @@ def _at(
 ) -> tuple[float, Neighbours | None, str | None]:
     """Return the metric at a value of the field, and the neighbours it was counted from; or NaN and the reason."""
     try:
-        varied = _varied(structure, field, value)
+        varied = _by_weaker_side(structure.varied(field, value))
         number, neighbours = aim.metric.at(varied, excitation)
     except InputError as error:
         return nan, None, "; ".join(str(Problem(problem.message, field=problem.field)) for problem in error.problems)

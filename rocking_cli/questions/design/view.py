@@ -211,7 +211,8 @@ def doubts(found: Design, excitation: Excitation) -> list[str]:
         sentences += _not_known(found)
         if len(excitation.polarities) == 1:
             way = "as given" if excitation.polarities[0] > 0 else "reversed"
-            sentences.append(f"Motions {way} only: give {named('polarity')} both, as the other may be worse.")
+            other = f"unless the structure is symmetric, the other may be worse. Give {named('polarity')} both."
+            sentences.append(f"Motions {way} only: {other}")
         if len(excitation.motions) > 1:
             sentences.append(f"At each value, the worst of {len(excitation.motions)} motions governs.")
     return sentences

@@ -256,7 +256,8 @@ def rank(
         equal = [
             each.measure
             for each in ranked[1:]
-            if (best := ranked[0]).measure in without
+            if records.size > 2
+            and (best := ranked[0]).measure in without
             and each.measure in without
             and not is_clear(each.efficiency - best.efficiency, without[each.measure] - without[best.measure])
         ]

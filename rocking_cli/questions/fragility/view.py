@@ -207,7 +207,9 @@ def half(found: Fragility) -> str:
         most = f"{end} or more" if isinf(median.high) else f" to {median.high:.3g}{end}"
         interval = f"{100 * curve.confidence:g} %: {median.low:.3g}{most}" if median.low < median.high else "exact"
         within = each.seen.x.min() <= median.value <= each.seen.x.max()
-        return f"at {measure} {median.value:.3g}{end} ({interval})" + ("" if within else ", outside the levels tried")
+        return f"at {measure} {median.value:.3g}{end} ({interval})" + (
+            "" if within else ", outside the intensities of the runs"
+        )
 
     first, *others = map(at, ends)
     if others:
@@ -373,7 +375,13 @@ def _is_sound(found: Fragility | Bivariate) -> bool:
     """Whether nothing speaks against a curve: it is exact, or it is bounded and no test rejects it."""
     curve = getattr(found, "curve", None)  # which surfaces lack
     return curve is not None and (
-        curve.is_exact or (curve.fit is not None and not curve.rejected and curve.fit.intervals[1].low > 0)
+        curve.is_exact
+        or (
+            curve.fit is not None
+            and curve.p_value is not None
+            and not curve.rejected
+            and curve.fit.intervals[1].low > 0
+        )
     )
 
 

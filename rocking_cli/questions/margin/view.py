@@ -124,7 +124,7 @@ def _where_known_ends(rows: Sequence[MarginRow], end: Conclusion) -> str:
         return ""
     known = row.margin.known_to
     up_to = "" if known is None else f"all outcomes are known up to a factor of {known:.3g}; "
-    from_there = f"from {end.ratio:.3g} on, {percent(LEAST_SHARE)} or more overturn or are unknown"
+    from_there = f"at {end.ratio:.3g}, {percent(LEAST_SHARE)} or more overturn or are unknown"
     return f"Not a margin to overturning: {up_to}{from_there}, as {_why(row.margin, row.unknown)}."
 
 
@@ -243,7 +243,7 @@ def _reached(found: Margin, shares: NDArray[np.float64], does: str) -> list[str]
         least = float(shares[above].min(initial=1.0))
         if least < level:
             factor = float(found.factors[above][shares[above].argmin()])
-            again = f"only {percent(least)} do" if least else "none does"
+            again = f"only {percent(least)} {does.removesuffix(',')}" if least else "none does"
             return [*levels, f"A stronger motion is not always worse: at a factor of {at(factor)} {again}."]
     return levels
 

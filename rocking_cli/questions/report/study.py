@@ -98,7 +98,7 @@ class MotionResult(Response):
     def close(self) -> bool:
         """Whether the outcome is known, and a small change of the motion or of the model could give another outcome."""
         best = self.histories["nonlinear"]
-        if best.unknown or (best.fell and self.decisive):
+        if best.unknown or (best.fell and self.neighbours[self.polarity].overturned >= SURE_SHARE):
             return False
         alike = self.neighbours[self.polarity].sensitive is False
         if disagree(self.histories) or not alike or best.peak_ratio > NEAR_OVERTURNING:

@@ -176,9 +176,12 @@ class Several:
         if order:
             yield f"Friction that the joints require: {self._friction(asks, order)}."
         fail = {name: demand for name, demand in self._contacts.items() if not demand.stands}
-        for name, demand in (fail or {each: asks[each] for each in order[:1]}).items():
-            for words in contact_parts(demand, self._mechanism):  # none if the structure does not rock
-                yield (type(words) if fail else Aside)(f"{name}: {words.removeprefix('Contact: ')}")
+        impacts = {name: each.impact_friction for name, each in asks.items() if each.impact_friction > 0}
+        worst = sorted(impacts, key=lambda name: -impacts[name])[:1]
+        for name, demand in (fail or {each: asks[each] for each in dict.fromkeys([*order[:1], *worst])}).items():
+            for k, words in enumerate(contact_parts(demand, self._mechanism)):  # none if the structure does not rock
+                kind = Aside if k == 0 and not fail else type(words)  # the friction is in the sentence above
+                yield kind(f"{name}: {words.removeprefix('Contact: ')}")
 
     def _friction(self, asks: Mapping[str, ContactDemand], order: Sequence[str]) -> str:
         """Return the friction that motions require, the largest first, and the motions that require too much."""

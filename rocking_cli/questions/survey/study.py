@@ -441,7 +441,7 @@ def _alone(place: int, entry: SurveyEntry, structure: Structure, setting: Settin
         structure.etas[k],
         why.removeprefix(f"{structure.name}: ") if why is not None else None,
         cautions=setting.cautions(mechanism),
-        any_friction=mechanism.friction is None and len(mechanism.bodies()) == 1,
+        any_friction=mechanism.friction is None and len(mechanism.bodies()) == 1 and not mechanism.attached,
         ratio=verification.ratio if verification is not None else None,
         verified=verification.conclusion if verification is not None else None,
         unprinted=verification is not None and verification.unprinted,

@@ -392,7 +392,8 @@ def _of_peaks(found: Survey) -> Iterator[str]:
         yield f"The structures stand on a floor: {_peaks('PGA of the floor', found.floor_pga)}."
     if len(found.polarities) == 1:
         way = "as given" if found.polarities[0] > 0 else "reversed"
-        yield f"Motions {way} only: give {named('polarity')} both, as the other may be worse."
+        other = f"unless a structure is symmetric, the other may be worse. Give {named('polarity')} both."
+        yield f"Motions {way} only: {other}"
     if len(found.motions) == 1 and found.around.count:
         yield "One record is one sample: use several."
 
@@ -410,7 +411,7 @@ def _of_neighbours(found: Survey) -> Iterator[str]:
         yield f"One time history is one sample: `rocking margin` shows how close the result is.{why}"
         return
     of = f"{found.around.count} neighbours ({deviations(found.around)})"
-    most = [each for each in found.rows if each.under and each.under.share and each.under.share.highest >= SATURATED]
+    most = [each for each in found.rows if each.under and each.under.share and each.under.share.lowest >= SATURATED]
     if len(most) > 1:
         yield (
             f"{_structures(len(most))} overturn with {percent(SATURATED)} or more of their neighbours, which hardly "

@@ -135,7 +135,7 @@ class TestWeakerSide:
         shaken = {"until": "overturned < 5%", "motions": "sine:0.3g:0.8s", "neighbours": 20, "points": 3}
         said = " ".join(rk.design(rk.Block(**DEEP), "depth=0.6m:1m", **shaken).sentences)
         assert "overturned is the same at every value tried: depth has no effect on it." in said
-        assert "Motions as given only: give `polarity` both" in said
+        assert "Motions as given only: unless the structure is symmetric" in said
 
 
 class TestShares:

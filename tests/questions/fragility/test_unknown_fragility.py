@@ -225,7 +225,7 @@ def half_of(curve):
     if curve["median"] is None or (curve["kind"] == "lognormal" and curve["dispersion"] is None):
         return "at no known PGA"
     value, low, high = (np.inf if end is None else end for end in curve["median"].values())
-    outside = "" if 0.2 <= value <= 1.5 else ", outside the levels tried"
+    outside = "" if 0.2 <= value <= 1.5 else ", outside the intensities of the runs"
     most = " g or more" if np.isinf(high) else f" to {high:.3g} g"
     return f"at PGA {value:.3g} g (95 %: {low:.3g}{most}){outside}"
 

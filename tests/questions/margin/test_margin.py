@@ -169,14 +169,14 @@ class TestWords:
             ((0, 0.05, 0), None, ["At no scale factor from 1 to 3 (PGA from 0.5 g to 1.5 g)", "10 % or more"]),
             ((0, 0.2, 0.6), None, ["10 %", "at a factor of 2 (PGA 1 g), 50 % at 3 (1.5 g) and 90 % at none up to 3"]),
             ((0, 0.2, 0.0, 1.0), None, ["not always worse: at a factor of 3 (1.5 g) none does."]),
-            ((0, 0.6, 0.3, 1.0), None, ["not always worse: at a factor of 3 (1.5 g) only 30 % do."]),
-            ((0, 0.6, 1.0, 0.7, 0.8), None, ["not always worse: at a factor of 4 (2 g) only 70 % do."]),
+            ((0, 0.6, 0.3, 1.0), None, ["always worse: at a factor of 3 (1.5 g) only 30 % overturn the structure."]),
+            ((0, 0.6, 1.0, 0.7, 0.8), None, ["worse: at a factor of 4 (2 g) only 70 % overturn the structure."]),
             # Unknown outcomes count as overturning in what is said first.
             ((0, 0, 0), (0, 0.3, 0.6), ["or have an unknown outcome, at a factor of 2 (PGA 1 g), 50 % at 3 (1.5 g)",
                                         "From a factor of 2 (1 g) on", "does not prove that it stands"]),
             ((0, 0, 0), (0, 0.05, 0.05), ["At no scale factor from 1 to 3", "or have an unknown outcome",
                                           "From a factor of 2 (1 g) on", "does not prove that it stands"]),
-            ((0, 0.2, 0.0, 1.0), (0, 0.4, 0.3, 0), ["3 (1.5 g) only 30 % do", "the structure may overturn",
+            ((0, 0.2, 0.0, 1.0), (0, 0.4, 0.3, 0), ["3 (1.5 g) only 30 % overturn", "the structure may overturn",
                                                     "known to overturn it: 10 % from 2 (1 g), 50 % from 4 (2 g)"]),
         ],
     )  # fmt: skip
@@ -375,7 +375,7 @@ def test_where_a_tie_yields_the_factor_is_no_margin_to_overturning(tmp_path):
     assert "smallest factor at which 10 % or more may overturn" in said["bare"] and "Not a margin" not in said["bare"]
     assert "may overturn is" not in said["tied"]
     known, ends = (float(each) for each in re.search(
-        r"Not a margin to overturning: all outcomes are known up to a factor of ([\d.]+); from ([\d.]+) on, 10 % or "
+        r"Not a margin to overturning: all outcomes are known up to a factor of ([\d.]+); at ([\d.]+), 10 % or "
         r"more overturn or are unknown, as the tie bar yields", said["tied"]).groups())  # fmt: skip
     unknown = np.array(verdict["unknown"])
     assert known == pytest.approx(verdict["factors"][int((unknown > 0).argmax()) - 1], rel=5e-3) and known < ends
