@@ -170,7 +170,7 @@ class TestWords:
             ((0, 0.2, 0.6), None, ["10 %", "at a factor of 2 (PGA 1 g), 50 % at 3 (1.5 g) and 90 % at none up to 3"]),
             ((0, 0.2, 0.0, 1.0), None, ["not always worse: at a factor of 3 (1.5 g) none does."]),
             ((0, 0.6, 0.3, 1.0), None, ["always worse: at a factor of 3 (1.5 g) only 30 % overturn the structure."]),
-            ((0, 0.6, 1.0, 0.7, 0.8), None, ["worse: at a factor of 4 (2 g) only 70 % overturn the structure."]),
+            ((0, 0.6, 1.0, 0.7, 0.8), None, ["always worse: at a factor of 4 (2 g) only 70 % overturn"]),
             # Unknown outcomes count as overturning in what is said first.
             ((0, 0, 0), (0, 0.3, 0.6), ["or have an unknown outcome, at a factor of 2 (PGA 1 g), 50 % at 3 (1.5 g)",
                                         "From a factor of 2 (1 g) on", "does not prove that it stands"]),
