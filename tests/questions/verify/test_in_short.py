@@ -21,7 +21,7 @@ from rocking_cli.views.verification import view
 from tests.cli.test_cli import run
 from tests.conftest import EXAMPLES
 
-MAX_LINES = 85  # of the short view, in 60 columns: 84, and which direction governs
+MAX_LINES = 84  # of the short view, in 60 columns
 SITES = [EXAMPLES / "verify" / f"{name}.yaml" for name in ("site", "ground")]
 STRUCTURES = [
     *(each for each in sorted((EXAMPLES / "verify").glob("*.yaml")) if "\nmechanism:" in each.read_text("utf-8")),
