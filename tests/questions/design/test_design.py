@@ -131,6 +131,16 @@ class TestWeakerSide:
         assert found.value == pytest.approx(0.36) and found.depth_governs == [pytest.approx((0.3, 0.45))]
         assert "governs" not in rk.design(rk.Block(width=0.5, height=2.0), "width=0.2m:1m", "lambda > 0").sentences[0]
 
+    def test_what_an_intervention_requires_is_by_the_weaker_side_too(self, tmp_path):
+        site = (EXAMPLES / "verify" / "site.yaml").read_text(encoding="utf-8") + "\nintervention: improvement\n"
+        (tmp_path / "site.yaml").write_text(site, encoding="utf-8")
+        deep, thin = (rk.Block(width=w, depth=d, height=6.0, density=1800) for w, d in ((0.6, 0.4), (0.4, 0.6)))
+        ends = [
+            rk.design(each, "height=4:9", "ratio >= required", site=tmp_path / "site.yaml", points=3).aim.level
+            for each in (deep, thin)
+        ]
+        assert ends[0] == pytest.approx(ends[1], rel=1e-9)
+
     def test_what_has_no_effect_on_shares_is_said(self):
         shaken = {"until": "overturned < 5%", "motions": "sine:0.3g:0.8s", "neighbours": 20, "points": 3}
         said = " ".join(rk.design(rk.Block(**DEEP), "depth=0.6m:1m", **shaken).sentences)
