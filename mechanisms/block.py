@@ -146,8 +146,8 @@ class Block(SingleBody):
         centred = [{**load.model_dump(exclude_unset=True), "at": [0.0, load.at[1]]} for load in loads]
         turned = self.model_copy(update={"width": self.depth, "depth": self.width, "loads": centred or None})
         aside = any(load.at[0] for load in loads)  # masses off the middle may make the width the weaker side
-        own, other = (min(map(each.uplift, Direction)) for each in (self, turned))
-        return None if aside and own < (1 - EQUAL_DIRECTIONS) * other else turned
+        upright, about_depth = (min(map(each.uplift, Direction)) for each in (self, turned))
+        return None if aside and upright < (1 - EQUAL_DIRECTIONS) * about_depth else turned
 
     def may_rock_about_depth(self) -> bool:
         alone = self.plane is None and self.one_sided is None and not (self.ties or self.interlock or self.crushing)
