@@ -95,6 +95,7 @@ bench: setup  ## Ratios within one run; see docs/performance.md. RECORD=FILE for
 	-$(BIN)/python $(INSTALL) ".[bench]"
 	$(BIN)/python benchmarks/starting.py
 	$(BIN)/python benchmarks/histories.py $(RECORD)
+	$(BIN)/python benchmarks/yardstick.py $(RECORD)
 	$(BIN)/python benchmarks/maps.py
 	$(BIN)/python benchmarks/fragility.py
 	$(BIN)/python benchmarks/fits.py
@@ -177,7 +178,7 @@ $(RELEASE_STAMP): $(PACKAGE_STAMP)
 	$(BIN)/python $(INSTALL) --editable ".[release]"
 	$(BIN)/python -c "import pathlib; pathlib.Path('$(RELEASE_STAMP)').touch()"
 
-release: $(RELEASE_STAMP)  ## dist/: source distribution and wheel, checked, installed elsewhere and tried there
+release: $(RELEASE_STAMP)  ## dist/: source distribution and a wheel for each system, checked, installed elsewhere and tried there
 	$(BIN)/python scripts/release.py
 
 clean:

@@ -7,7 +7,6 @@ On a record of your own, or the shipped example. Each part prints a table in Mar
 
 from __future__ import annotations
 
-import os
 import sys
 import time
 from collections.abc import Callable
@@ -18,13 +17,12 @@ from typing import Any
 
 import numpy as np
 from by_solve_ivp import BySolveIvp
-from numba import njit
 
 from rocking_cli import GroundMotion, load_structure, read_record, respond_each
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics import kernels as at
 from rocking_cli.dynamics import stepping
-from rocking_cli.dynamics.batch import HISTORIES_PER_TASK, Runs, respond_many
+from rocking_cli.dynamics.batch import HISTORIES_PER_TASK
 from rocking_cli.dynamics.deck import MAX_IMPACTS, lay_out, run_deck
 from rocking_cli.dynamics.history import follow
 from rocking_cli.dynamics.model import Model
@@ -33,9 +31,6 @@ from rocking_cli.names import RTOL
 from rocking_cli.structure import build_models
 
 PROJECT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(PROJECT / "scripts"))
-from by_numba import OPTIONS, compiled  # noqa: E402
-
 ACCEL = PROJECT / "examples" / "accel.csv"
 CASES = [("block", 0.3), ("block", 0.5), ("block", 0.7), ("frame", 0.5)]
 WANTED = 1e-8  # relative error of the peak at which solvers are compared
@@ -89,22 +84,6 @@ class Prepared:
         return float((self.marks[0, at.PEAK : at.PEAK + 2] / self.model.phi_cr).max())
 
 
-_MADE = compiled(at)  # by numba: a function of a benchmark is not shipped
-law_of, nystrom = _MADE["law_of"], _MADE["nystrom"]
-
-
-@njit(**OPTIONS)
-def bare_loop(forces, numbers, u, dt):
-    """One step of the pair a sample and nothing else: no impacts, no error control, no samples kept."""
-    law = law_of(False, numbers, 0)
-    state = at.State(0.5 * numbers[0, at.Q_CR], 0.0, 0.0)
-    for k in range(u.size - 1):
-        state, _, _ = nystrom(forces, law, at.Ground(u[k], (u[k + 1] - u[k]) / dt, 9.80665, 0.0), 0.0, state, dt)
-        if not 0 < state.q < numbers[0, at.Q_CR]:
-            state = at.State(0.5 * numbers[0, at.Q_CR], 0.0, state.f)
-    return state.q
-
-
 def against_solvers(motion: GroundMotion, models: dict[str, list[Model]]) -> None:
     rows = []
     for name, scale in CASES:
@@ -115,7 +94,6 @@ def against_solvers(motion: GroundMotion, models: dict[str, list[Model]]) -> Non
         if ours == 0:  # this record does not lift it
             continue
         error = abs(ours / one.run(1e-14) - 1)
-        bare = seconds(lambda m=nonlinear, s=shaken: bare_loop(m.forces, m.numbers, s.acceleration, s.dt))
         for rtol in (1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12):
             start = time.perf_counter()
             other = BySolveIvp(nonlinear, shaken, rtol).outcome()
@@ -127,13 +105,13 @@ def against_solvers(motion: GroundMotion, models: dict[str, list[Model]]) -> Non
         what = f"{ours:.6f}" if ours > 0 else f"falls at {-ours:.4f} s"
         rows.append([
             name, f"{scale:g}", what, f"{error:.0e}", f"{1e3 * fast:.3f}",
-            f"{1e3 * whole:.3f}", f"{fast / bare:.2f}", f"{slow:.2f}", f"{rtol:.0e}", f"{slow / fast:.0f}",
+            f"{1e3 * whole:.3f}", f"{slow:.2f}", f"{rtol:.0e}", f"{slow / fast:.0f}",
             f"{1e3 * linear:.3f}",
         ])  # fmt: skip
     table(
         f"One history on {motion.name}, {motion.npts} points at {motion.dt:g} s, to rest or certain overturning, warm",
-        ["structure", "scale", "peak", "its error", "nonlinear ms", "in Python ms", "/ bare loop", "solve_ivp s",
-         "at rtol", "solve_ivp / ours", "linear ms"],
+        ["structure", "scale", "peak", "its error", "nonlinear ms", "in Python ms", "solve_ivp s", "at rtol",
+         "solve_ivp / ours", "linear ms"],
         rows,
     )  # fmt: skip
 
@@ -175,30 +153,6 @@ def tolerance(models: dict[str, list[Model]]) -> None:
             spent = seconds(lambda r=rtol, o=one: o.run(r)) / time_over_p.size
             rows.append([f"{p_dt:g}", f"{rtol:.0e}", f"{error:.0e}", f"{1e9 * spent:.0f}"])
     table("Tolerance, error of the peak, and price", ["p dt", "rtol", "error of the peak", "ns a sample"], rows)
-
-
-def batches(motion: GroundMotion, models: dict[str, list[Model]]) -> None:
-    threads = os.cpu_count() or 1
-    rows = []
-    for model in models["block"][0], models["block"][2]:
-        runs = Runs.of(0, 0, scale=np.random.default_rng(1).uniform(0.2, 0.9, BATCH))
-        sample = Runs.of(0, 0, scale=runs.scale[: BATCH // 20])
-        single = seconds(lambda m=model, s=sample: respond_many([m], [motion], s, threads=1), 3) / len(sample)
-        before = most_memory()
-        start = time.perf_counter()
-        respond_many([model], [motion], runs, threads=threads)
-        each = (time.perf_counter() - start) / BATCH
-        grown = (most_memory() - before) / BATCH
-        rows.append([
-            model.name, f"{BATCH:,}", f"{1e6 * single:.1f}", f"{1 / single:,.0f}", str(threads), f"{1 / each:,.0f}",
-            f"{single / each / threads:.0%}", f"{grown:.0f}",
-        ])  # fmt: skip
-    table(
-        "A batch: scales from 0.2 to 0.9 on the block",
-        ["model", "histories", "us each, one thread", "a second", "threads", "a second", "of threads x single",
-         "bytes each"],
-        rows,
-    )  # fmt: skip
 
 
 def bulk(motion: GroundMotion) -> None:
@@ -258,7 +212,6 @@ def main() -> None:
     models = {name: build_models(structure) for name, structure in structures.items()}
     against_solvers(motion, models)
     tolerance(models)
-    batches(motion, models)
     bulk(motion)
     length()
     against_pybullet(motion, models)

@@ -25,7 +25,8 @@ from rocking_cli.structure import Structure
 from rocking_cli.studies.under_pulses import PulsedModel, linear_block, outcomes, parse_shape, pulsed_model
 
 EXAMPLES = Path(__file__).resolve().parents[1] / "examples"
-POINTS = 256
+POINTS = 400
+GOAL = 15  # us a point of a nonlinear map
 PLANE = np.linspace(0.5, 10.0, POINTS)
 SINE = parse_shape("sine")
 
@@ -47,9 +48,9 @@ def maps() -> None:
     for name in ("block", "frame"):
         structures.append(pulsed_model(Structure(load_structure(EXAMPLES / f"{name}.yaml")), "nonlinear", SINE))
     print(f"\nMaps of {POINTS} x {POINTS} full sines, omega and a from 0.5 to 10, on {os.cpu_count()} processors\n")
-    print("| structure | model | s | of processors s | us a point |\n| --- | --- | --- | --- | --- |")
+    print(f"| structure | model | s | of processors s | us a point, goal {GOAL} |\n| --- | --- | --- | --- | --- |")
     for each in structures:
-        passed, spent = seconds(lambda s=each: overturning_map(s, SINE, PLANE, PLANE))
+        passed, spent = seconds(lambda s=each: overturning_map(s, SINE, PLANE, PLANE), 3)
         point = 1e6 * spent / POINTS**2
         print(f"| {each.name} | {each.model.name} | {passed:.2f} | {spent:.2f} | {point:.1f} |", flush=True)
 

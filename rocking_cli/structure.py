@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
-from functools import cache, cached_property, partial
+from functools import cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pydantic import ValidationError
 
@@ -17,6 +16,7 @@ from rocking_cli.core import Equivalence, Mechanism, NoEquivalentBlock, Statics,
 from rocking_cli.core.equivalence import MAX_CURVATURE, uplift_error
 from rocking_cli.core.hung.element import Question
 from rocking_cli.dynamics.model import MODELS, Model, ModelName, build, no_restitution
+from rocking_cli.dynamics.parallel import matrices_by_one_thread
 from rocking_cli.errors import InputError, MechanismError, Problem, named, of_structure
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.field_problems import (
@@ -35,18 +35,7 @@ from rocking_cli.names import OPENING
 from rocking_cli.short_repr import short_repr
 from rocking_cli.text import cut, did_you_mean
 
-if TYPE_CHECKING:
-    from threadpoolctl import ThreadpoolController
-
 MAX_OPENING = 1000.0  # bound on the largest opening over D_cr; with wider openings every outcome is known
-
-
-@cache
-def _libraries_of_matrices(with_scipy: bool) -> ThreadpoolController:
-    """Return the loaded libraries for matrices, which takes a millisecond to find; scipy brings one of its own."""
-    from threadpoolctl import ThreadpoolController
-
-    return ThreadpoolController()
 
 
 def with_restitution(mechanism: Mechanism, eta: float) -> Mechanism:
@@ -273,8 +262,7 @@ class Structure:
         """Return a model of the structure. Raises `InputError` or `MechanismError` if it cannot be built."""
         if name not in self._models:
             statics, equivalence = self.statics, self.equivalence if name != "nonlinear" else None
-            one_thread = _libraries_of_matrices("scipy.linalg" in sys.modules).limit(limits=1, user_api="blas")
-            with self.named(), one_thread:  # threads wait for each other on busy cores
+            with self.named(), matrices_by_one_thread():
                 self._models[name] = build(
                     self.mechanism, statics, equivalence, name, self.opening, to_first_impact=self.to_first_impact
                 )

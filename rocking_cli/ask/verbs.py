@@ -22,6 +22,7 @@ from rocking_cli.ask.groups import WithTable
 from rocking_cli.ask.kinds import STANDARD_OUTPUT
 from rocking_cli.ask.kinds import each as several_of
 from rocking_cli.ask.watcher import SILENT, Watcher
+from rocking_cli.dynamics.parallel import matrices_by_one_thread
 from rocking_cli.errors import InputError, Problem, RockingError, named
 from rocking_cli.processing.reading_options import CORRECTIONS, SCALING, corrected_once
 from rocking_cli.text import cut, did_you_mean, numbered
@@ -94,7 +95,8 @@ def verb(model: type[M]) -> Callable[[Callable[[M, Watcher], A_co]], Verb[A_co]]
             first = dict(zip(places, placed, strict=False))
             if twice := first.keys() & given.keys():
                 raise TypeError(f"{function.__name__} got {', '.join(sorted(twice))} twice")
-            return ask({**first, **given}, {}, watch)
+            with matrices_by_one_thread():  # a command has the library start no others
+                return ask({**first, **given}, {}, watch)
 
         made: Any = called
         made.__signature__, made.__doc__ = _signature(model, function), _documented(model, function)

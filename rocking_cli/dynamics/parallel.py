@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import signal
 import sys
@@ -9,10 +10,30 @@ import threading
 import warnings
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import contextmanager
 from contextvars import copy_context  # messages of threads name arguments as they were given
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rocking_cli.errors import Refused
+
+if TYPE_CHECKING:
+    from threadpoolctl import ThreadpoolController
+
+
+@contextmanager
+def matrices_by_one_thread() -> Iterator[None]:
+    """Have matrices worked on by one thread: they are small, and threads wait for each other on busy cores."""
+    with_scipy = "scipy.linalg" in sys.modules  # scipy brings a library of its own
+    with _libraries_of_matrices(with_scipy).limit(limits=1, user_api="blas"):
+        yield
+
+
+@functools.cache
+def _libraries_of_matrices(with_scipy: bool) -> ThreadpoolController:
+    """Return the loaded libraries for matrices, which takes a millisecond to find."""
+    from threadpoolctl import ThreadpoolController
+
+    return ThreadpoolController()
 
 
 def in_parts(
@@ -123,4 +144,5 @@ def _end_with_parent() -> None:
 
 def _part(first: int, stop: int) -> Any:
     assert _work is not None
-    return _work(first, stop)
+    with matrices_by_one_thread():
+        return _work(first, stop)

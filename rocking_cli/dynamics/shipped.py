@@ -35,6 +35,7 @@ LIBRARIES = (
     "darwin-aarch64.dylib", "darwin-x86_64.dylib", "linux-aarch64.so", "linux-x86_64.so", "win32-x86_64.dll"
 )  # fmt: skip
 """The libraries that belong to the package."""
+FOR_ALL = "this rocking-cli was installed for any system, without kernels"
 _ARGUMENT_TYPES = (ctypes.POINTER(ctypes.c_int64), ctypes.POINTER(ctypes.c_double), ctypes.POINTER(ctypes.c_int64))
 
 
@@ -74,6 +75,8 @@ def loaded() -> ctypes.CDLL:
     listed = manifest()["files"].get(at.name)
     if struct.calcsize("P") != 8 or at.name not in LIBRARIES:
         raise ImportError(f"no kernels are shipped for {at.stem}")
+    if listed is None:  # the wheel for all systems lists none
+        raise ImportError(f"{FOR_ALL}: the wheel for {at.stem} has them")
     if not at.is_file():
         raise BrokenKernels(f"{at} is missing, reinstall rocking-cli")
     try:

@@ -1,7 +1,6 @@
 """The commands as a user runs them: results on standard output, everything else on standard error."""
 
 import json
-import os
 import re
 import subprocess
 import sys
@@ -479,16 +478,6 @@ class TestStart:
             "    assert not {*heavy} & {*sys.modules}, (words, {*heavy} & {*sys.modules})\n"
         )
         subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-
-    def test_a_command_solves_its_matrices_by_one_thread(self):
-        code = (
-            "import atexit, sys; from threadpoolctl import threadpool_info; from rocking_cli.__main__ import run;"
-            "atexit.register(lambda: print({one['num_threads'] for one in threadpool_info()}, file=sys.stderr));"
-            f"sys.argv[1:] = ['equiv', {str(EXAMPLES / 'block.yaml')!r}]; run()"
-        )
-        usual = {key: value for key, value in os.environ.items() if key != "OPENBLAS_NUM_THREADS"}
-        result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=usual)
-        assert result.stderr.split()[-1] == "{1}"
 
     def test_every_public_name_can_be_imported(self):
         import rocking_cli

@@ -81,6 +81,7 @@ class TestWhatIsShipped:
     def test_they_are_small_and_all_of_them(self):
         files = {each.name: each.stat().st_size for each in shipped.READY_FOLDER.iterdir()}
         assert files.keys() == {*shipped.manifest()["files"], shipped.MANIFEST_FILE}
+        assert shipped.manifest()["files"].keys() == {*shipped.LIBRARIES}
         assert sum(files.values()) < 1.6e6
 
     @pytest.mark.parametrize("system, machine, name", [
@@ -260,6 +261,13 @@ class TestLibrary:
         shipped.place().unlink()
         with pytest.raises(BrokenKernels, match=f"{shipped.place().name} is missing, reinstall"):
             shipped.load(PULSES)
+
+    def test_none_in_the_wheel_for_any_system(self, folder):
+        manifest = {**shipped.manifest(), "files": {}}
+        (folder / shipped.MANIFEST_FILE).write_text(json.dumps(manifest), encoding="utf-8")
+        with pytest.warns(KernelWarning, match=rf"{shipped.FOR_ALL}: the wheel for {shipped.place().stem} has them"):
+            assert ways.way() == "python"
+        assert not isinstance(ways.fault_of_shipped(), BrokenKernels)
 
     def test_one_that_may_not_be_read(self, folder, monkeypatch):
         def refused(file):

@@ -3,19 +3,23 @@
 `make release` itself builds, installs and tries; here is what it rests on.
 """
 
+import json
 import os
 import re
 import shutil
 import subprocess
 import sys
 import tomllib
+import zipfile
 from importlib import import_module
 
 import pytest
 import yaml
 from packaging.requirements import Requirement
-from packaging.utils import canonicalize_name
+from packaging.tags import parse_tag, sys_tags
+from packaging.utils import canonicalize_name, parse_wheel_filename
 
+from rocking_cli.dynamics import shipped
 from tests.cli.test_cli import run
 from tests.conftest import PROJECT
 from tests.elsewhere import VERSIONS
@@ -36,6 +40,17 @@ def release():
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(PROJECT / "scripts")
         yield import_module("release")
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """A wheel of the sources, with all libraries."""
+    pytest.importorskip("wheel", reason="wheels for each system are made by `wheel`")
+    folder = tmp_path_factory.mktemp("whole")
+    words = [sys.executable, "-m", "hatchling", "build", "-t", "wheel", "-d", str(folder)]
+    subprocess.run(words, cwd=PROJECT, check=True, capture_output=True)
+    (made,) = folder.iterdir()
+    return made
 
 
 class TestScript:
@@ -59,6 +74,40 @@ class TestScript:
     def test_the_records_of_the_readme_are_read(self, release, tmp_path):
         release.at2(PROJECT / "examples" / "accel.csv", tmp_path / "a.AT2")
         assert "1201" in run("record", "a.AT2", "--all").stdout and "0.55" in run("record", "a.AT2").stdout
+
+
+class TestWheels:
+    def test_every_library_has_its_platforms_and_that_of_this_system_fits_here(self, release):
+        assert set(release.LIBRARIES) <= set(release.PLATFORMS)
+        tags = {name: parse_tag(f"py3-none-{platforms}") for name, platforms in release.PLATFORMS.items()}
+        assert {name for name, each in tags.items() if each & set(sys_tags())} == {shipped.place().name}
+
+    @pytest.mark.rest
+    @pytest.mark.parametrize("library", [shipped.place().name, "win32-x86_64.dll", None])
+    def test_a_wheel_has_its_library_alone_and_knows_it(self, release, whole, library, tmp_path):
+        made = release.with_library(whole, library, tmp_path)
+        *_, tags = parse_wheel_filename(made.name)
+        assert tags == parse_tag(f"py3-none-{'any' if library is None else release.PLATFORMS[library]}")
+        with zipfile.ZipFile(made) as packed, zipfile.ZipFile(whole) as source:
+            ready = {name for name in packed.namelist() if "/ready/" in name}
+            listed = json.loads(packed.read("rocking_cli/dynamics/ready/manifest.json"))["files"]
+            (metadata,) = (packed.read(name).decode() for name in packed.namelist() if name.endswith("/WHEEL"))
+            left_out = {name.rpartition("/")[2] for name in {*source.namelist()} - {*packed.namelist()}}
+            packed.extractall(tmp_path / "there")
+        assert {name.rpartition("/")[2] for name in ready} == {"manifest.json", *([library] if library else [])}
+        assert list(listed) == ([library] if library else []) and left_out == {*shipped.LIBRARIES} - {library}
+        assert f"Root-Is-Purelib: {str(library is None).lower()}" in metadata
+        code = "import rocking_cli; from rocking_cli.dynamics import ways; print(repr(ways.fault_of_shipped()))"
+        environment = {**os.environ, "PYTHONPATH": str(tmp_path / "there")}
+        words = [sys.executable, "-c", code]
+        done = subprocess.run(words, cwd=tmp_path, env=environment, check=True, capture_output=True, encoding="utf-8")
+        assert done.stdout.startswith("None" if library == shipped.place().name else f"ImportError('{shipped.FOR_ALL}")
+
+    def test_what_should_warn_and_does_not_ends_it(self, release, tmp_path):
+        words = [sys.executable, "-c", "import sys; sys.stderr.write('slow')"]
+        assert release.run(words, tmp_path, warned="slow") == ""
+        with pytest.raises(SystemExit, match="does not say 'fast'"):
+            release.run(words, tmp_path, warned="fast")
 
 
 def targets():
