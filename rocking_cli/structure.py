@@ -168,7 +168,8 @@ class Structure:
         check_opening(self.opening)
         if self.restitution is not None:
             given, eta = self.mechanism, self.restitution
-            object.__setattr__(self, "mechanism", kept(given, ("restitution", eta), lambda: with_restitution(given, eta)))
+            restored = kept(given, ("restitution", eta), lambda: with_restitution(given, eta))
+            object.__setattr__(self, "mechanism", restored)
         derived = kept(self.mechanism, (self.opening, self.to_first_impact), dict[str, Any])
         object.__setattr__(self, "_derived", derived)
 
@@ -315,7 +316,9 @@ class Structure:
         statics, equivalence = self.statics, self.equivalence if name != "nonlinear" else None
         one_thread = _libraries_of_matrices("scipy.linalg" in sys.modules).limit(limits=1, user_api="blas")
         with one_thread:  # threads wait for each other on busy cores
-            model = build(self.mechanism, statics, equivalence, name, self.opening, to_first_impact=self.to_first_impact)
+            model = build(
+                self.mechanism, statics, equivalence, name, self.opening, to_first_impact=self.to_first_impact
+            )
         model.protect()
         return model
 
