@@ -21,13 +21,20 @@ PROJECT = Path(__file__).resolve().parents[1]
 PAGE = PROJECT / "docs" / "performance.md"
 BEGIN, END = "<!-- measured -->\n", "<!-- /measured -->"
 ROUNDS, PAIRS = 7, 3
-RESPOND = ("-m", "rocking_cli", "respond", "examples/frame.yaml", "--record", "examples/accel.csv")
+MOTION = "--record", "examples/accel.csv"
+RESPOND = ("-m", "rocking_cli", "respond", "examples/frame.yaml", *MOTION)
+IMPORTS = "import click, numpy.random, threadpoolctl, yaml; from pydantic import BaseModel, Field, field_validator"
+LIBRARIES = "importing its libraries"
 PROCESSES = {
     "`python -c pass`": ("-c", "pass"),
     "`import rocking_cli`": ("-c", "import rocking_cli"),
     "`import numpy`": ("-c", "import numpy"),
+    LIBRARIES: ("-c", IMPORTS),
+    "importing them, and scipy's optimisers": ("-c", f"{IMPORTS}; import scipy.optimize"),
     "`rocking --help`": ("-m", "rocking_cli", "--help"),
     "`rocking equiv`": ("-m", "rocking_cli", "equiv", "examples/frame.yaml"),
+    "`rocking respond` of a block": ("-m", "rocking_cli", "respond", "examples/block.yaml", *MOTION),
+    "`rocking respond` of an assembly": ("-m", "rocking_cli", "respond", "examples/assembly.yaml", *MOTION),
     "`rocking respond`, later": RESPOND,
     "`rocking respond --plot`, later": (*RESPOND, "--plot", "{folder}/picture.png"),
 }
@@ -67,8 +74,11 @@ def starts() -> list[list[str]]:
         for name, arguments in FIRST.items():
             times[f"{name}, first on a machine"] = [_empty(arguments) for _ in range(ROUNDS)]
     least = {name: min(each) for name, each in times.items()}
-    python, later = least["`python -c pass`"], least["`rocking respond`, later"]
-    return [[name, f"{each:.3f}", f"{each / python:.0f}", f"{each / later:.2f}"] for name, each in least.items()]
+    python, libraries, later = (least[each] for each in ("`python -c pass`", LIBRARIES, "`rocking respond`, later"))
+    return [
+        [name, f"{each:.3f}", f"{each / python:.0f}", f"{each / libraries:.2f}", f"{each / later:.2f}"]
+        for name, each in least.items()
+    ]
 
 
 def _empty(arguments: tuple[str, ...]) -> float:
@@ -121,7 +131,7 @@ def table(title: str, columns: list[str], rows: list[list[str]]) -> str:
 def main() -> None:
     made = table(
         "Whole processes, processor time",
-        ["process", "s", "of an empty Python", "of `rocking respond`, later"],
+        ["process", "s", "of an empty Python", f"of {LIBRARIES}", "of `rocking respond`, later"],
         starts(),
     ) + table(
         "Nonlinear histories of a block and a frame under the shipped record, one thread",

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from contextlib import contextmanager
 from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
+from weakref import ref
 
 from pydantic import ValidationError
 
@@ -35,7 +36,31 @@ from rocking_cli.names import OPENING
 from rocking_cli.short_repr import short_repr
 from rocking_cli.text import cut, did_you_mean
 
+T = TypeVar("T")
+MOST_KEPT = 16  # results that are kept of structures that are asked again; the tables of one take some megabytes
 MAX_OPENING = 1000.0  # bound on the largest opening over D_cr; with wider openings every outcome is known
+
+
+_KEPT: dict[tuple[int, Hashable], tuple[ref[Mechanism], Any]] = {}
+
+
+def kept(mechanism: Mechanism, what: Hashable, make: Callable[[], T]) -> T:
+    """Return a result of a mechanism, made once while the mechanism lives and is among those that were last asked."""
+    key = id(mechanism), what
+    if (entry := _KEPT.pop(key, None)) is None:
+        entry = ref(mechanism, lambda _: _KEPT.pop(key, None)), make()
+    _KEPT[key] = entry
+    for oldest in list(_KEPT)[:-MOST_KEPT]:
+        _KEPT.pop(oldest, None)
+    result: T = entry[1]
+    return result
+
+
+def with_name(mechanism: Mechanism) -> Mechanism:
+    """Return a mechanism with a name: its own, or that of its kind."""
+    if mechanism.name:
+        return mechanism
+    return kept(mechanism, "named", lambda: mechanism.model_copy(update={"name": mechanism.mechanism}))
 
 
 def with_restitution(mechanism: Mechanism, eta: float) -> Mechanism:
@@ -126,12 +151,20 @@ class Structure:
     opening: float = OPENING
     to_first_impact: bool = False
     restitution: float | None = None
-    _models: dict[ModelName, Model] = field(default_factory=dict, repr=False)
+    _derived: dict[str, Any] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         check_opening(self.opening)
         if self.restitution is not None:
-            object.__setattr__(self, "mechanism", with_restitution(self.mechanism, self.restitution))
+            given, eta = self.mechanism, self.restitution
+            restored = kept(given, ("restitution", eta), lambda: with_restitution(given, eta))
+            object.__setattr__(self, "mechanism", restored)
+        derived = kept(self.mechanism, (self.opening, self.to_first_impact), dict[str, Any])
+        object.__setattr__(self, "_derived", derived)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickle and copy what it is made of: what is derived, such as tables of megabytes, is computed anew."""
+        return Structure, (self.mechanism, self.file, self.opening, self.to_first_impact, self.restitution)
 
     def under(self, *, opening: float | None = None, restitution: float | None = None) -> Structure:
         """Return the structure as a run has it; what is None stays. Raises `InputError` if a value is not valid."""
@@ -139,32 +172,38 @@ class Structure:
         restitution = self.restitution if restitution is None else restitution
         if (opening, restitution) == (self.opening, self.restitution):
             return self
-        return replace(self, opening=opening, restitution=restitution, _models={})
+        return replace(self, opening=opening, restitution=restitution)
 
     def of(self, mechanism: Mechanism) -> Structure:
         """Return the structure with another mechanism, such as its own with another field."""
-        return replace(self, mechanism=mechanism, _models={})
+        return replace(self, mechanism=mechanism)
 
     def released(self) -> Structure:
         """Return the structure for a free release: without a known restitution, simulated up to its first impact."""
-        return self if no_restitution(self.mechanism) is None else replace(self, to_first_impact=True, _models={})
+        return self if no_restitution(self.mechanism) is None else replace(self, to_first_impact=True)
 
     @property
     def name(self) -> str:
         """Name of the structure, or of its mechanism if it has none."""
         return self.mechanism.name or self.mechanism.mechanism
 
-    @cached_property
+    def _once(self, what: str, make: Callable[[], T]) -> T:
+        """Return a result of the structure, made once, whose errors have the structure's name."""
+        if what not in self._derived:
+            with self.named():
+                self._derived[what] = make()
+        result: T = self._derived[what]
+        return result
+
+    @property
     def equivalence(self) -> Equivalence:
         """Equivalent blocks of both directions. Raises `MechanismError`, with the structure's name, if none exist."""
-        with self.named():
-            return equivalent_block(self.mechanism, self.statics)
+        return self._once("equivalence", lambda: equivalent_block(self.mechanism, self.statics))
 
-    @cached_property
+    @property
     def statics(self) -> tuple[Statics, Statics]:
         """Statics of both directions; needs no equivalent block. Raises `MechanismError` with the structure's name."""
-        with self.named():
-            return both_statics(self.mechanism)
+        return self._once("statics", lambda: both_statics(self.mechanism))
 
     @cached_property
     def why_no_block(self) -> str | None:
@@ -260,13 +299,16 @@ class Structure:
 
     def model(self, name: ModelName) -> Model:
         """Return a model of the structure. Raises `InputError` or `MechanismError` if it cannot be built."""
-        if name not in self._models:
-            statics, equivalence = self.statics, self.equivalence if name != "nonlinear" else None
-            with self.named(), matrices_by_one_thread():
-                self._models[name] = build(
-                    self.mechanism, statics, equivalence, name, self.opening, to_first_impact=self.to_first_impact
-                )
-        return self._models[name]
+        return self._once(name, lambda: self._built(name))
+
+    def _built(self, name: ModelName) -> Model:
+        statics, equivalence = self.statics, self.equivalence if name != "nonlinear" else None
+        with matrices_by_one_thread():
+            model = build(
+                self.mechanism, statics, equivalence, name, self.opening, to_first_impact=self.to_first_impact
+            )
+        model.protect()
+        return model
 
     def models(self, names: Sequence[ModelName] = MODELS) -> list[Model]:
         """Return several models of the structure, in the order of `names`."""

@@ -7,7 +7,6 @@ import re
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from html import escape
 from importlib.util import find_spec
 from inspect import Parameter, signature
 from pathlib import Path
@@ -356,6 +355,8 @@ def _ends_of(columns: Columns) -> Table:
 
 
 def _html(part: Table | str) -> str:
+    from html import escape
+
     if isinstance(part, str):
         return f"<p>{escape(part)}</p>"
 

@@ -23,7 +23,7 @@ from rocking_cli.excitation.records.opening import STANDARD_INPUT, name_of, orig
 from rocking_cli.io.json_text import json_text
 from rocking_cli.io.yaml_file import decoded, read_text
 from rocking_cli.names import LANGUAGES, OPENING
-from rocking_cli.structure import Structure
+from rocking_cli.structure import Structure, with_name
 from rocking_cli.text import numbered, one_line
 from rocking_cli.views.view import heading
 
@@ -70,8 +70,7 @@ def structure_of(
     if isinstance(given, Structure):
         return given.under(opening=opening, restitution=restitution)
     if isinstance(given, Mechanism):
-        named = given if given.name else given.model_copy(update={"name": given.mechanism})
-        ready = Structure(named, opening=opening, restitution=restitution)
+        ready = Structure(with_name(given), opening=opening, restitution=restitution)
     elif isinstance(given, str | Path):
         ready = _read(given, watch).under(opening=opening, restitution=restitution)
     else:

@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from rocking_cli.arrays import median
 from rocking_cli.core.bodies import Body
 from rocking_cli.core.kinematics import Direction, Reals, RigidMotion
 from rocking_cli.errors import MechanismError, StructureError
@@ -131,9 +132,9 @@ def check_continuous(mechanism: str, direction: Direction, at: Coefficients, in_
         If V, G, B or I changes between two rotations by what its derivative there does not explain; a `StructureError`
         if the file of the structure gives its motion.
     """
-    moment = np.median(np.abs(at.G) + np.abs(at.B))  # typical size of G and B, of the order of m R, in the unit of V
+    moment = median(np.abs(at.G) + np.abs(at.B))  # typical size of G and B, of the order of m R, in the unit of V
     pairs = {"V": (at.V, at.G, moment), "G": (at.G, at.dG, moment), "B": (at.B, at.dB, moment)}
-    pairs["I"] = (at.I, 2 * at.J, np.median(at.I))
+    pairs["I"] = (at.I, 2 * at.J, median(at.I))
     jumps = {name: jump(at.phi, *pair) for name, pair in pairs.items()}
     first = min((phi, name) for name, phi in jumps.items())
     where = f"jumps at phi = {first[0]:.4g} rad in the {direction.label} direction"

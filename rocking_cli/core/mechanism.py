@@ -68,7 +68,7 @@ class Mechanism(Jointed):
     def __pydantic_init_subclass__(cls, **named: Any) -> None:
         """Refuse overrides of final members, and report any failure in other members as an error of the plugin."""
         super().__pydantic_init_subclass__(**named)
-        for name in vars(cls):
+        for name in [name for name in vars(cls) if name[:2] != "__"]:  # a look at a schema builds it
             if any(_is_final(vars(base).get(name)) for base in cls.__mro__[1:]):
                 hint = f": give a closed form as `{name}_alone`" if hasattr(cls, f"{name}_alone") else ""
                 raise TypeError(f"{cls.__name__} cannot override {name}, which follows from bodies and motion{hint}")

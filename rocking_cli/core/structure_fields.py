@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal, Never, Self, final
 
-from pydantic import Field, SerializeAsAny, ValidationError, model_validator
+from pydantic import ConfigDict, Field, SerializeAsAny, ValidationError, model_validator
 
 from rocking_cli.core.fields import Described, Name, Vertex, geometry_error, length, point, quantity
 from rocking_cli.core.hung.attachments import RefusedFields
@@ -128,6 +128,8 @@ def _fields_by_name(cls: type[StructureFields]) -> Problem:
 
 class StructureFields(Described):
     """Fields that every structure may have beside those of its mechanism, and properties that follow from them."""
+
+    model_config = ConfigDict(defer_build=True)  # no structure is made of a base class, and few of most mechanisms
 
     refused: ClassVar[Mapping[str, str]] = {
         "dampers": "a damper is not in this version: leave it out",

@@ -6,7 +6,8 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from rocking_cli.verification.results import MINUS, Working
+from rocking_cli.studies.remark import MINUS
+from rocking_cli.verification.results import Working
 
 MAX_WIDTH = 60  # characters of a fraction, or in brackets; wider ones stay on the line, where they can be broken
 TOKEN = re.compile(r"[_^]\[[^\[\]]*\]|\d+(?:[.,]\d+)?|[^\W\d_Σ]+| +|.")

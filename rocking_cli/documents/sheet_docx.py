@@ -14,8 +14,9 @@ from rocking_cli.documents.mathematics import Node, Unreadable, formulas_of, pie
 from rocking_cli.documents.sheet_page import ORIGIN_MARKS, TEXT_WIDTH, figure_of, printed_width, runs
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.plotting import style
+from rocking_cli.studies.remark import MARK
 from rocking_cli.text import printable
-from rocking_cli.verification.results import MARK, Working
+from rocking_cli.verification.results import Working
 from rocking_cli.views.sheet.document import Drawing, Item, Listing, Sheet, SheetPart, Steps
 from rocking_cli.views.view import Table
 

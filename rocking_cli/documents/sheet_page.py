@@ -17,8 +17,8 @@ from rocking_cli.documents.mathematics import BRACKETS, Node, Unreadable, formul
 from rocking_cli.plotting.moving import as_script, asset
 from rocking_cli.plotting.structure import draw_structure
 from rocking_cli.studies.picture import picture
+from rocking_cli.studies.remark import MARK
 from rocking_cli.text import printable
-from rocking_cli.verification.results import MARK
 from rocking_cli.views.sheet.document import Drawing, Moving, Sheet, SheetPart
 from rocking_cli.views.sheet.language import WORD_JOINER, Language
 

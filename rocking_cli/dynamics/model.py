@@ -167,6 +167,13 @@ class Model:
         one, other = self.numbers  # the numbers have different units
         return same and np.allclose(one, other, rtol=EQUAL_TABLES, atol=EQUAL_TABLES**2, equal_nan=True)
 
+    def protect(self) -> None:
+        """Make the arrays read-only that kernels take a copy of: the model is shared by all who ask its structure."""
+        for owner in (self, *(self.tables or ())):
+            for name, part in vars(owner).items():
+                if isinstance(part, np.ndarray) and (owner is not self or name in ("numbers", "held")):
+                    part.flags.writeable = False
+
     def q(self, ratio: float) -> float:
         """Return the kernel's coordinate q at a signed rotation, given as a fraction of the phi_cr of its direction."""
         side = 1 if ratio < 0 else 0

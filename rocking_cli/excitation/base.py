@@ -146,7 +146,8 @@ class GroundMotion:
             )
         if np.iscomplexobj(self.acceleration):
             raise InputError(Problem("must be real numbers", self.name, field="`acceleration`"))
-        samples = _own(np.ma.filled(self.acceleration, np.nan), np.float64)
+        given: Any = self.acceleration  # a masked array, perhaps: numpy imports those when they are named
+        samples = _own(given.filled(np.nan) if hasattr(given, "filled") else given, np.float64)
         if unit not in (None, "m/s2"):
             try:
                 samples = _own(samples * read(f"1 {unit}", "m/s2"), np.float64)

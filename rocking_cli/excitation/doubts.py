@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from rocking_cli.arrays import median
 from rocking_cli.excitation.base import STANDARD_GRAVITY, Doubt, GroundMotion
 from rocking_cli.excitation.measures import Measures
 
@@ -176,7 +177,7 @@ def _dropouts(motion: GroundMotion) -> list[Doubt]:
     if not changes.size:
         return []
     sizes = np.abs(steps[changes])
-    jumps = sizes > max(MIN_JUMP_OVER_PEAK * peak, MIN_JUMP_OVER_STEP * np.median(sizes))
+    jumps = sizes > max(MIN_JUMP_OVER_PEAK * peak, MIN_JUMP_OVER_STEP * median(sizes))
     level = np.abs(a[changes[1:]]) < peak  # equal samples at the peak are clipping
     lost = np.flatnonzero((np.diff(changes) >= DROPOUT_SAMPLES) & jumps[:-1] & jumps[1:] & level)
     if not lost.size:

@@ -13,13 +13,14 @@ from rocking_cli.errors import PluginError, RockingError
 
 
 @contextmanager
-def blame(what: str, module: str, *, but: type[Exception] = RockingError) -> Iterator[None]:
+def blame(what: str | Callable[[], str], module: str, *, but: type[Exception] = RockingError) -> Iterator[None]:
     """Turn any error of plugin code into a `PluginError`.
 
     Parameters
     ----------
-    what : str
-        Beginning of the message, with the plugin and the task: "the mechanism odd failed in motion".
+    what : str or callable
+        Beginning of the message, with the plugin and the task: "the mechanism odd failed in motion"; or what returns
+        it, as the package of a plugin takes long to name.
     module : str
         Module of the plugin: the message ends with the last place in its package.
     but : type, optional
@@ -35,11 +36,11 @@ def blame(what: str, module: str, *, but: type[Exception] = RockingError) -> Ite
     except (RockingError, MemoryError, but):
         raise
     except (Exception, SystemExit) as error:  # a plugin may raise anything, but must not end the program
-        raise plugin_error(what, module, error) from error
+        raise plugin_error(what if isinstance(what, str) else what(), module, error) from error
 
 
 def plugin_error(what: str, module: str, error: BaseException) -> PluginError:
-    """Return the error to raise from an error of a plugin. Parameters are those of `blame`."""
+    """Return the error to raise from an error of a plugin. Parameters are those of `blame`, `what` being a text."""
     message = str(error)
     return PluginError(f"{what}: {type(error).__name__}{f': {message}' if message else ''}{_place(module, error)}")
 

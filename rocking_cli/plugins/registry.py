@@ -15,8 +15,9 @@ from functools import cache, lru_cache
 from importlib import metadata
 from importlib.metadata import EntryPoint, EntryPoints
 from io import StringIO
+from itertools import chain
 from threading import RLock, Timer
-from typing import ClassVar, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 from rocking_cli.errors import InputError, MechanismError, PluginWarning, warn
 from rocking_cli.plugins.errors import blame
@@ -29,7 +30,7 @@ SLOW_LOADING = 2.0  # s after which a plugin that is still loading is named
 
 def entry_points(group: str) -> EntryPoints:
     """Return the entry points of a group; they are searched anew once `sys.path`, or a folder of it, has changed."""
-    return _installed(group, (*map(id, sys.meta_path), *((path, *_state(path)) for path in sys.path)))
+    return _of_group(group, (*map(id, sys.meta_path), *((path, *_state(path)) for path in sys.path)))
 
 
 def _state(path: str) -> tuple[int, ...]:
@@ -41,12 +42,19 @@ def _state(path: str) -> tuple[int, ...]:
     return status.st_dev, status.st_ino, status.st_mtime_ns
 
 
-@lru_cache(maxsize=32)  # reading the entry points of all packages takes as long as most commands
-def _installed(group: str, state: tuple[object, ...]) -> EntryPoints:
+@lru_cache(maxsize=32)
+def _of_group(group: str, state: tuple[object, ...]) -> EntryPoints:
+    return EntryPoints(point for point in _installed(state) if point.group == group)
+
+
+@lru_cache(maxsize=1)  # reading the entry points of all packages takes as long as most commands
+def _installed(state: tuple[object, ...]) -> EntryPoints:
     try:
-        return metadata.entry_points(group=group)
+        every: Any = metadata.entry_points()
+        # Python 3.11 gives them by group, in a dictionary whose own methods are deprecated.
+        return EntryPoints(chain.from_iterable(dict.values(every)) if isinstance(every, dict) else every)
     except Exception:  # the file of any package may be broken
-        return EntryPoints(point for point in _readable() if point.group == group)
+        return EntryPoints(_readable())
 
 
 def _readable() -> Iterator[EntryPoint]:
@@ -88,7 +96,7 @@ def origin(point: EntryPoint) -> str:
 
 def load(point: EntryPoint) -> object:
     """Load the object of an entry point."""
-    with blame(f"{origin(point)} cannot be loaded", point.value.partition(":")[0]), _watched(point):
+    with blame(lambda: f"{origin(point)} cannot be loaded", point.value.partition(":")[0]), _watched(point):
         loaded: object = point.load()
     return loaded
 

@@ -16,7 +16,6 @@ from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.dynamics.verdict import Agreement, agreements, remedy
 from rocking_cli.errors import InputError, SolverError
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.excitation.pulse_fit import FITTED, PulseFit, fit_pulses
 from rocking_cli.processing.reading import Scaled
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.conclusion import ByBlocks, Concluded, Conclusion, NeighbourShare, NextStep, are_alike, worst
@@ -25,6 +24,7 @@ from rocking_cli.studies.engines import follow
 from rocking_cli.studies.neighbours import Conditions, Neighbours, neighbours
 
 if TYPE_CHECKING:
+    from rocking_cli.excitation.pulse_fit import PulseFit
     from rocking_cli.studies.both_engines import BothEngines
 
 Histories = Mapping[ModelName, History]
@@ -265,6 +265,8 @@ def response_of(
 
     fit = to_pulse = None
     if first is not None and conditions.with_pulse is not None:
+        from rocking_cli.excitation.pulse_fit import FITTED, fit_pulses
+
         shapes = tuple(FITTED) if conditions.with_pulse == BEST_PULSE else (conditions.with_pulse,)
         fit = max(fit_pulses(first, shapes, ("velocity",)), key=lambda one: one.captured)
         pulse = fit.alone(first)

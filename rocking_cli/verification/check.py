@@ -18,10 +18,11 @@ from rocking_cli.plugins.errors import blame
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Effect, LeftOut
 from rocking_cli.studies.file_part import problems_of
+from rocking_cli.studies.remark import Remark
 from rocking_cli.text import did_you_mean
 from rocking_cli.verification.code import DEFAULT_CODE, SITE_HINT, Code, SiteFile, codes
 from rocking_cli.verification.demand import SiteDemand
-from rocking_cli.verification.results import Control, Histories, Remark, Verification, Verified
+from rocking_cli.verification.results import Control, Histories, Verification, Verified
 
 EFFECTS = {"glued": Effect.CONDITION, "bonded": Effect.UNDECIDED, "unusual": Effect.CONDITION,
            "no_floor": Effect.CONDITION}  # fmt: skip

@@ -11,7 +11,7 @@ import numpy as np
 from rocking_cli.arrays import Reals
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.short_repr import short_repr
-from rocking_cli.verification.results import Remark
+from rocking_cli.studies.remark import Remark
 
 
 class SupportSpectrum(Protocol):

@@ -11,7 +11,6 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import inf, isclose, isfinite, isnan, nan
 from typing import Any, Literal, NamedTuple, Self
-from unicodedata import name
 
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.hung.attachments import RefusedFields
@@ -21,6 +20,7 @@ from rocking_cli.processing.oscillator import Floor
 from rocking_cli.processing.reading import Scaled
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.conclusion import Concluded, Conclusion, Effect, LeftOut, Limit, worst
+from rocking_cli.studies.remark import Remark, in_plain
 
 Standing = Literal["print", "transcription", "code", "ours", "plain"]
 """How far a formula of a code was checked: `print`, `transcription` or `code`, or that it is not of the code.
@@ -28,20 +28,12 @@ Standing = Literal["print", "transcription", "code", "ours", "plain"]
 `print`: checked against the printed code; `transcription`: against a transcription of its text; `code`: not yet
 checked; `ours`: an interpretation where the code leaves a choice; `plain`: mechanics or arithmetic.
 """
-MINUS = "−"
-MARK = re.compile(r"([_^])\[([^\[\]]*)\]")
-"""A subscript or superscript: `d_[0]^[*]` has both."""
 SLOT = re.compile(r"{(\w+)(?::(\d+))?}")
 """A slot for a number in a formula, with its number of digits if others than `DIGITS` are printed: `{T:9}`."""
 AND_SO_ON = re.compile(r"([^();]+?)( \+ |; )…")
 """Part of a formula that is repeated for each of several numbers: `({P} · {x} + …)`."""
 DIGITS = 6
 """Significant digits of numbers in formulas and of results, where a formula does not ask for more."""
-PLAIN_CHARACTERS = {
-    "λ": "lambda", "Σ": "sum", "√": "sqrt", "·": "*", "×": "*", "≥": ">=", "≤": "<=", "′": "'", "²": "2", "³": "3",
-    "–": "-", MINUS: "-", "⟦": "", "⟧": "",
-}  # fmt: skip
-"""Replacements of the signs of a formula in plain characters; Greek letters are spelled."""
 
 
 class Clause(str):
@@ -251,31 +243,6 @@ def put(numbers: str, values: Mapping[str, Any], write: Callable[..., str]) -> s
     return filled(AND_SO_ON.sub(repeated, numbers), values)
 
 
-def in_plain(text: str) -> str:
-    """Return a formula, or a text with symbols, in plain characters: `alpha0 g/(e* FC)`, `T_SLV`."""
-
-    def mark(match: re.Match[str]) -> str:
-        below, what = match[1] == "_", match[2]
-        return what if what == "*" or (below and what.isdigit()) else f"{match[1]}{what}"
-
-    return MARK.sub(mark, text).translate(PLAIN)
-
-
-class _Plain(dict[int, str]):
-    """Replacements of signs by their code points: a Greek letter by its name, any other sign by itself."""
-
-    def __missing__(self, code: int) -> str:
-        sign = chr(code)
-        script, _, letter = name(sign, "").rpartition(" ")
-        if script.startswith("GREEK"):
-            sign = letter.capitalize() if "CAPITAL" in script else letter.lower()
-        self[code] = sign
-        return sign
-
-
-PLAIN = _Plain(str.maketrans(PLAIN_CHARACTERS))
-
-
 class Later(Sequence[Working]):
     """Lines of a calculation that are made when they are first accessed."""
 
@@ -335,30 +302,6 @@ class Method:
 def governing(methods: Mapping[str, Method]) -> str:
     """Return the key of the method with the smallest ratio; the first if no ratio is known."""
     return min(methods, key=lambda key: inf if (ratio := methods[key].ratio) is None or isnan(ratio) else ratio)
-
-
-@short_repr
-class Remark(NamedTuple):
-    """A remark on a result, which a view says in a language.
-
-    Parameters
-    ----------
-    key : str
-        Key of the sentence among the texts of the code.
-    values : mapping of str to object
-        Numbers, names and further remarks in the sentence.
-    states : sequence of str, optional
-        The limit states whose conclusion it limits, see `Verification.effects`; by default all.
-    """
-
-    key: str
-    values: Mapping[str, Any]
-    states: Sequence[str] | None = None
-
-    @classmethod
-    def of(cls, key: str, /, **values: Any) -> Remark:
-        """Return the remark of a key with its values."""
-        return cls(key, values)
 
 
 @short_repr

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, replace
 from math import isfinite
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rocking_cli import names
 from rocking_cli.names import percent
@@ -22,10 +22,13 @@ from rocking_cli.studies.conclusion import (
     are_alike,
     worst,
 )
+from rocking_cli.studies.remark import Remark
 from rocking_cli.text import in_short
-from rocking_cli.verification.results import Remark, Verification
 from rocking_cli.views.sheet.language import ENGLISH, Language
 from rocking_cli.views.verdict import GO_ON, REMEDIES
+
+if TYPE_CHECKING:
+    from rocking_cli.verification.results import Verification
 
 MAX_DIGITS = 9
 POLARITIES = {1: "as given", -1: "reversed"}

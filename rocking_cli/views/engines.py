@@ -15,7 +15,6 @@ from rocking_cli.names import percent
 from rocking_cli.structure import Structure
 from rocking_cli.studies.contact import ContactDemand
 from rocking_cli.studies.engines import Engine, EngineName
-from rocking_cli.studies.engines.free_blocks import COLLAPSE
 from rocking_cli.views.column import Column, data_of, of, of_part, only_shown, rounded, table_of
 from rocking_cli.views.verdict import ends, unknown_after
 from rocking_cli.views.view import Aside, Table, number
@@ -62,6 +61,8 @@ def blocks_in_words(engine: EngineName, histories: str, friction: str, off_edge:
         f"Engine: free blocks (MuJoCo) for {histories}{others}. Their friction is {friction}.{off * (off_edge > 0)} "
         "Impacts lose the energy that contact takes, whatever restitution is given."
     )
+    from rocking_cli.studies.engines.free_blocks import COLLAPSE
+
     yield Aside(f"Overturning of free blocks is collapse: {COLLAPSE}.")
 
 

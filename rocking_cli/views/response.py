@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, replace
 from math import degrees, inf, sqrt
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rocking_cli import names
 from rocking_cli.arrays import Reals
@@ -16,7 +16,6 @@ from rocking_cli.dynamics.outcome import OneOutcome
 from rocking_cli.dynamics.sliding import Slid
 from rocking_cli.dynamics.verdict import Agreement, disagree
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
-from rocking_cli.excitation.pulse_fit import PulseFit
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.structure import Structure
 from rocking_cli.studies.movements import Movements, PointPeak, TiePeak, Watched
@@ -39,6 +38,9 @@ from rocking_cli.views.verdict import (
     why_unknown,
 )
 from rocking_cli.views.view import ASIDE, Aside, Table, View, force_unit, in_degrees, number, processing_data
+
+if TYPE_CHECKING:
+    from rocking_cli.excitation.pulse_fit import PulseFit
 
 LINEAR = frozenset(MODELS[1:])  # the models that are equivalent blocks
 MAX_LISTED_IMPACTS = 12  # number of impacts of a model in its table; the data have all

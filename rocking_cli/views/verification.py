@@ -12,8 +12,9 @@ from typing import TYPE_CHECKING, Any, Generic, NamedTuple, Self, TypeVar
 from rocking_cli.core import Direction, Mechanism
 from rocking_cli.errors import InputError, PluginError, Problem
 from rocking_cli.plugins.errors import guard
+from rocking_cli.studies.remark import Remark, in_plain
 from rocking_cli.verification.code import codes
-from rocking_cli.verification.results import Remark, Verification, Verified, Working, in_plain
+from rocking_cli.verification.results import Verification, Verified, Working
 from rocking_cli.views.cautions import cautions_of
 from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, table_of
 from rocking_cli.views.conclusion import conclusion_data, next_in_words, of_verification, uncounted_ties

@@ -461,6 +461,9 @@ class TestImpacts:
         assert re.search(rf"^ impacts +{response['impacts']} *$", text, re.MULTILINE) and said in " ".join(text.split())
 
 
+MOST_MODULES = 150  # of the package that a response imports
+
+
 class TestStart:
     def test_a_command_imports_what_it_uses(self):
         """One after the other in one process: each may import more than those before."""
@@ -478,6 +481,28 @@ class TestStart:
             "    assert not {*heavy} & {*sys.modules}, (words, {*heavy} & {*sys.modules})\n"
         )
         subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+
+    def test_a_response_leaves_alone_what_other_questions_use(self):
+        """Nor does it read the entry points of all packages twice, or whose package a plugin is."""
+        package = "rocking_cli."
+        others = [
+            "numpy.ma", "scipy", "html", *(package + each for each in (
+                "verification", "studies.picture", "studies.engines.free_blocks", "processing.oscillator",
+                "excitation.pulse_fit", "io.spreadsheet", "questions.respond.azimuths",
+            )),
+        ]  # fmt: skip
+        code = (
+            "import sys; from importlib import metadata; read, every = [], metadata.entry_points\n"
+            "metadata.entry_points = lambda **of: read.append(of) or every(**of)\n"
+            "import rocking_cli.cli.main as m\n"
+            f"m.main(['respond', {str(EXAMPLES / 'block.yaml')!r}, '--record', {ACCEL!r}], standalone_mode=False)\n"
+            "from rocking_cli.plugins.registry import package_of\n"
+            f"print([each for each in {others!r} if each in sys.modules], read, package_of.cache_info().currsize,"
+            " sum(each.startswith('rocking_cli') for each in sys.modules), file=sys.stderr)"
+        )
+        result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+        *found, count = result.stderr.splitlines()[-1].rsplit(" ", 1)
+        assert found == ["[] [{}] 0"] and 100 < int(count) <= MOST_MODULES
 
     def test_every_public_name_can_be_imported(self):
         import rocking_cli

@@ -26,8 +26,9 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.processing.oscillator import response_spectrum
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import follow
+from rocking_cli.studies.remark import Remark
 from rocking_cli.verification.demand import SiteDemand
-from rocking_cli.verification.results import Histories, MotionPlace, Remark, where_it_stands
+from rocking_cli.verification.results import Histories, MotionPlace, where_it_stands
 
 MIN_RECORDS_FOR_MEAN = 7
 LEAST_MEAN = 0.9  # share of the spectrum of the site that the mean of records reaches [NTC 2018, 3.2.3.6]

@@ -26,8 +26,8 @@ from rocking_cli.codes.italian.rules import FIRST_STATE, RULES, STATES, STATES_O
 from rocking_cli.codes.italian.site import ItalianSite
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.excitation.base import STANDARD_GRAVITY
+from rocking_cli.studies.remark import Remark
 from rocking_cli.verification.demand import DemandParameter, DemandTable, SiteDemand, StateDemand
-from rocking_cli.verification.results import Remark
 
 LARGEST_AG = 1e6  # g; no ground motion is as strong, and a larger capacity is not reported
 SAME_RATIO = 1e-13  # relative difference up to which a demand is proportional to a_g

@@ -35,7 +35,8 @@ from rocking_cli.core import Direction, Mechanism
 from rocking_cli.core.hung.element import INTERLOCK_NAME
 from rocking_cli.errors import InputError, MechanismError
 from rocking_cli.studies.conclusion import LeftOut
-from rocking_cli.verification.results import CAPACITY_TOLERANCE, Control, Later, Remark
+from rocking_cli.studies.remark import Remark
+from rocking_cli.verification.results import CAPACITY_TOLERANCE, Control, Later
 
 KEY, NAME = "NTC2018", "Italian code"
 EDITION = "NTC 2018 and Circolare 7/2019"

@@ -44,7 +44,8 @@ from rocking_cli.core.hung.ties import MAX_STRAIN
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.names import digits_apart
 from rocking_cli.studies.conclusion import Effect
-from rocking_cli.verification.results import CAPACITY_TOLERANCE, Remark
+from rocking_cli.studies.remark import Remark
+from rocking_cli.verification.results import CAPACITY_TOLERANCE
 
 EFFECTS: Mapping[str, Effect] = {
     **dict.fromkeys(("confidence", "letter", "onset_alone", "stronger_without", "tie_limits"), Effect.REPLACES),

@@ -13,8 +13,9 @@ from rocking_cli.codes.italian.rules import LONG_PERIOD, OF_STATE, STATE_OF_METH
 from rocking_cli.core import Direction
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.conclusion import Concluded, Conclusion, LeftOut, worst
+from rocking_cli.studies.remark import Remark
 from rocking_cli.verification import results as frame
-from rocking_cli.verification.results import CAPACITY_TOLERANCE, MotionPlace, Remark, Requirement
+from rocking_cli.verification.results import CAPACITY_TOLERANCE, MotionPlace, Requirement
 
 if TYPE_CHECKING:
     from rocking_cli.dynamics.history import History

@@ -14,7 +14,8 @@ from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, OF_STATE, STATE_OF_M
 from rocking_cli.codes.italian.sheet.steps import PACKAGE, TERMINAL, ties
 from rocking_cli.codes.italian.sheet.summary import METHOD_NAMES, comparison, histories, methods, verdicts
 from rocking_cli.studies.conclusion import Concluded
-from rocking_cli.verification.results import Verification, in_plain
+from rocking_cli.studies.remark import in_plain
+from rocking_cli.verification.results import Verification
 from rocking_cli.views.column import Column, frame_of, of
 from rocking_cli.views.conclusion import digits_beside, headline
 from rocking_cli.views.sheet.document import Sentence

@@ -290,12 +290,15 @@ class _Guarded:
 
     def sniff(self, content: Any, /) -> bool:
         """Return whether the reader claims a file; False if it fails."""
-        what = f"{origin(self._point)} failed to say whether a file is of its format"
+
+        def what() -> str:
+            return f"{origin(self._point)} failed to say whether a file is of its format"
+
         try:
             with blame(what, self._module):
                 return bool(self._reader.sniff(content))
         except RockingError as error:  # `sniff` must not raise even these errors
-            broken = error if isinstance(error, PluginError) else PluginError(f"{what}: {error}")
+            broken = error if isinstance(error, PluginError) else PluginError(f"{what()}: {error}")
             leave_out(broken)
             self.TITLE, self.SIGN = _Broken.TITLE, str(broken)
             return False
@@ -303,7 +306,7 @@ class _Guarded:
     def read(self, content: Any, file: str, /, **options: Any) -> GroundMotion:
         """Return the motion that the reader reads; any other result is an error of the reader."""
         try:
-            with blame(f"{origin(self._point)} failed to read it", self._module):
+            with blame(lambda: f"{origin(self._point)} failed to read it", self._module):
                 motion = self._reader.read(content, file, **options)
                 if not isinstance(motion, GroundMotion):
                     raise TypeError(f"read gave a {type(motion).__name__}, not a GroundMotion")

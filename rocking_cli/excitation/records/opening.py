@@ -15,7 +15,6 @@ from weakref import WeakKeyDictionary, WeakSet
 
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.io.files import read_at_most, read_bytes
-from rocking_cli.io.spreadsheet import OLE, sheets_of
 from rocking_cli.text import regex
 
 STANDARD_INPUT = "-"
@@ -28,6 +27,7 @@ MAX_LISTED_FILES = 30
 
 _GZIP = b"\x1f\x8b\x08"
 _ZIP = (b"PK\x03\x04", b"PK\x05\x06", b"PK\x07\x08")
+_OLE = b"\xd0\xcf\x11\xe0"  # of .xls
 _TAR = slice(257, 262), b"ustar"
 _OFFICE = "[Content_Types].xml"
 _WORKBOOK = frozenset(["xl/workbook.xml", "xl/workbook.bin", "content.xml"])  # of .xlsx, .xlsb and .ods
@@ -111,7 +111,7 @@ def open_record(path: str | Path, channel: str | None = None) -> Opened:
     elif data.startswith(_ZIP):
         data, inside, several, channel = _of_zip(data, file, channel)
         file, member = f"{file}/{inside}", inside if several else ""
-    elif data.startswith(OLE):
+    elif data.startswith(_OLE):
         data, inside, several, channel = _of_spreadsheet(data, file, channel)
         file, member = f"{file}/{inside}", inside if several else ""
     elif data[_TAR[0]] == _TAR[1]:
@@ -206,6 +206,8 @@ def _of_zip(data: bytes, file: str, channel: str | None) -> tuple[bytes, str, bo
 
 def _of_spreadsheet(data: bytes, file: str, channel: str | None) -> tuple[bytes, str, bool, str | None]:
     """Return the table of the requested or only sheet as text, its name, whether there are several, and the channel."""
+    from rocking_cli.io.spreadsheet import sheets_of
+
     sheets = sheets_of(data, file)
     if not sheets:
         raise InputError(Problem("the spreadsheet is empty", file))

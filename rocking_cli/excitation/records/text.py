@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rocking_cli.arrays import Bools, Reals
+from rocking_cli.arrays import Bools, Reals, median
 from rocking_cli.errors import InputError, Problem, how_to_correct, named
 from rocking_cli.excitation.base import MOST_SAMPLES, Doubt, GroundMotion
 from rocking_cli.excitation.records.columns import (
@@ -601,7 +601,7 @@ def even_interval(time: Reals) -> float:
     if dt < _MIN_DT:
         hint = "the first column must be the time, in seconds"
         raise UnevenTimeError(f"the times give a sample interval of {dt:g} s", hint, None)
-    usual = np.median(steps)
+    usual = median(steps)
 
     def odd(rounding: Reals) -> tuple[Bools, Bools]:
         # Rounding moves each time by up to half its last digit, and the difference of two times by a whole one.
@@ -666,7 +666,7 @@ def on_grid(time: Reals, values: Reals) -> tuple[float, Reals, Doubt] | None:
     steps = np.diff(time)
     if not increasing(time):
         return None
-    dt = float(f"{np.median(steps):.6g}")  # sampling intervals are round numbers
+    dt = float(f"{median(steps):.6g}")  # sampling intervals are round numbers
     longest = int(steps.argmax())
     count = (time[-1] - time[0]) / dt * (1 + 1e-9)
     if not count < MAX_GRID_RATIO * len(time):

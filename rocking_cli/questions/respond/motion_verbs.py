@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rocking_cli.ask.answer import Answer, Dimensions, drawn
 from rocking_cli.ask.ground_motions import Motion, introduce, motion_of, warn_about
@@ -16,13 +16,15 @@ from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.excitation.measures import measure
-from rocking_cli.processing.oscillator import Floor
 from rocking_cli.processing.reading import Scaled
 from rocking_cli.processing.steps import Step, parse_steps, process
 from rocking_cli.questions.respond.asked import ByTolerance, OfModels, RespondAroundAsked, RespondAsked
-from rocking_cli.questions.respond.azimuths import AzimuthResponses
 from rocking_cli.structure import Structure
 from rocking_cli.views.restitution import heading_of_run
+
+if TYPE_CHECKING:
+    from rocking_cli.processing.oscillator import Floor
+    from rocking_cli.questions.respond.azimuths import AzimuthResponses
 
 
 def correct(motion: Motion, *steps: Step | str | Mapping[str, Any]) -> GroundMotion:
@@ -78,6 +80,8 @@ def on_floor(motion: Motion, floor: Floor | str | Mapping[str, Any]) -> GroundMo
     InputError
         If the floor is not valid.
     """
+    from rocking_cli.processing.oscillator import Floor
+
     return (floor if isinstance(floor, Floor) else Floor.parse(floor)).of(motion_of(motion))
 
 

@@ -20,7 +20,6 @@ from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.names import RTOL, TAIL_SECONDS
 from rocking_cli.structure import Structure
-from rocking_cli.studies.engines.free_blocks import free_blocks
 
 EngineName = Literal["exact", "blocks", "auto"]
 
@@ -90,6 +89,8 @@ def follow(
     check_motion(structure, motion, release, tail)
     simulated = history.follow(structure.model(model), motion, release=release or 0.0, tail=tail, rtol=rtol)
     if simulated.unknown and not simulated.crushes:
+        from rocking_cli.studies.engines.free_blocks import free_blocks
+
         with suppress(InputError):  # raised of what free blocks cannot have
             return replace(simulated, witness=free_blocks(structure.mechanism) is not None)
     return simulated

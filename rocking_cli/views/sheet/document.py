@@ -18,8 +18,9 @@ from jinja2 import ChoiceLoader, Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
 from rocking_cli.core import Mechanism
+from rocking_cli.studies.remark import in_plain
 from rocking_cli.text import in_short
-from rocking_cli.verification.results import Evaluated, Working, in_plain
+from rocking_cli.verification.results import Evaluated, Working
 from rocking_cli.views.sheet.language import SIGNIFICANT_DIGITS, Language, plain
 from rocking_cli.views.view import Table
 

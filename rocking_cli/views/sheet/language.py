@@ -13,11 +13,14 @@ from importlib.resources import files
 from math import isnan
 from string import Formatter
 from time import time
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rocking_cli import names
-from rocking_cli.verification.results import MINUS, Evaluated, Remark, Working, in_plain
+from rocking_cli.studies.remark import MINUS, Remark, in_plain
 from rocking_cli.views import view
+
+if TYPE_CHECKING:
+    from rocking_cli.verification.results import Evaluated, Working
 
 WITH_COMMA = frozenset({"it"})
 """The languages that write 1.5 with a comma."""

@@ -19,7 +19,8 @@ from rocking_cli.codes import italian
 from rocking_cli.codes.italian import formulas
 from rocking_cli.codes.italian.rules import RULES
 from rocking_cli.core import Direction
-from rocking_cli.verification.results import Formula, as_written, in_plain, put
+from rocking_cli.studies.remark import in_plain
+from rocking_cli.verification.results import Formula, as_written, put
 from rocking_cli.views.sheet.build import SheetOfCode
 from rocking_cli.views.sheet.document import Sentence, Steps
 from rocking_cli.views.verification import shown, view

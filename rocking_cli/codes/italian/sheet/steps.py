@@ -22,7 +22,8 @@ from rocking_cli.codes.italian.sheet.site import hazard_at, is_close
 from rocking_cli.core.hung.attached import Spot
 from rocking_cli.core.hung.element import INTERLOCK_NAME
 from rocking_cli.core.hung.ties import MAX_STRAIN
-from rocking_cli.verification.results import Evaluated, Formula, Remark, Working
+from rocking_cli.studies.remark import Remark
+from rocking_cli.verification.results import Evaluated, Formula, Working
 from rocking_cli.views.sheet.document import sections, tables, workings
 from rocking_cli.views.sheet.language import Language, as_subscript, texts_of
 from rocking_cli.views.view import Table

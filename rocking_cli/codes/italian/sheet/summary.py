@@ -16,7 +16,7 @@ from rocking_cli.codes.italian.results import HISTORIES, Dynamic, ItalianVerific
 from rocking_cli.codes.italian.rules import DAMAGE, LINEAR, NONLINEAR, OF_STATE
 from rocking_cli.codes.italian.sheet.steps import PACKAGE, DirectionSteps, title
 from rocking_cli.studies.conclusion import Concluded
-from rocking_cli.verification.results import Remark
+from rocking_cli.studies.remark import Remark
 from rocking_cli.views.conclusion import of_verification
 from rocking_cli.views.sheet.document import Sentence, tables
 from rocking_cli.views.sheet.language import Language
