@@ -60,8 +60,13 @@ def models(name, k=1.0):
 
 
 def test_models_are_built_by_one_thread_of_the_library_of_matrices(monkeypatch):
-    during = []
-    monkeypatch.setattr(structure, "build", lambda *_, **__: during.extend(threadpool_info()))
+    during, build = [], structure.build
+
+    def watched(*given, **named):
+        during.extend(threadpool_info())
+        return build(*given, **named)
+
+    monkeypatch.setattr(structure, "build", watched)
     with threadpool_limits(2, "blas"):
         before = threadpool_info()
         build_models(MECHANISMS["block"](), ("nonlinear",))

@@ -672,7 +672,9 @@ def made_ready(mechanism, name):
         numbers = each.numbers.copy()
         numbers[:, stepping.ETA] = mechanism.restitution
         models[each.name] = replace(each, numbers=numbers)
-    return Structure(mechanism, _models=models)
+    structure = Structure(mechanism)
+    structure._derived.update(models)
+    return structure
 
 
 @pytest.mark.every(5)
