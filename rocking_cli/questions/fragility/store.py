@@ -482,7 +482,7 @@ class Store:
 
     def _make_folder(self) -> None:
         """Put the old folder aside if the study starts anew, and make an empty one."""
-        if self._anew:
+        while self._anew:
             taken = [each.name for each in self.path.parent.iterdir()]
             aside = self.path.with_name(numbered(f"{self.path.stem}.before", self.path.suffix, taken))
             try:
@@ -491,6 +491,8 @@ class Store:
             except FileNotFoundError:  # another process was faster
                 pass
             except OSError as error:
+                if aside.exists():  # another one has taken the name
+                    continue
                 raise refusal(error, "cannot be renamed", self.path) from None
             self._anew = False
         folder(str(self.path))

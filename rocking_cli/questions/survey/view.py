@@ -66,8 +66,14 @@ def caution_of(row: RankedStructure, say: Language = ENGLISH) -> str | None:
 
 
 def _marked(row: RankedStructure, say: Language = ENGLISH) -> str | None:
-    """Return what is doubtful of the size of a structure, and the cautions on it, as one text; None without any."""
-    return " ".join(filter(None, [row.found.doubt, caution_of(row, say)])) or None
+    """Return what is doubtful of the size of a structure, and the cautions on it, as one text; None without any.
+
+    In another language than English the fields are named; warnings have the doubts in words.
+    """
+    doubt = row.found.doubt
+    if doubt is not None and say.key != ENGLISH.key:
+        doubt = say("Unusual or missing: {fields}.", fields=", ".join(each.split()[0] for each in doubt.split("; ")))
+    return " ".join(filter(None, [doubt, caution_of(row, say)])) or None
 
 
 def _share(row: RankedStructure) -> str | None:

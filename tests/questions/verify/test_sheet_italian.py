@@ -42,6 +42,7 @@ FUNCTION_WORDS = """
 STRUCTURES = sorted(
     each for each in EXAMPLES.rglob("*.yaml")
     if "plugin" not in each.parent.name and re.search("^mechanism:", each.read_text(encoding="utf-8"), re.MULTILINE)
+    and each.stem != "statue_on_plate"  # of a museum: the numbers are refused as those of masonry
 )  # fmt: skip
 SITES = {"hazard": (EXAMPLES / "verify" / "site.yaml").read_text(encoding="utf-8"), "floor": SITE + FLOOR + SLC}
 GROUND = (EXAMPLES / "verify" / "ground.yaml").read_text(encoding="utf-8")
@@ -371,6 +372,9 @@ def test_a_survey_and_its_page_are_italian(tmp_path):
             "spanning_wall",
             "hinge: weakest",
             "floor",
+            "width",
+            "PGA",
+            "both",
             "κ₂",
         )
         assert not english_in(shown_in(answer.view), *names)
