@@ -93,7 +93,7 @@ class Yardstick:
         degree, structure = STRUCTURES[name][0], load_structure(PROJECT / "examples" / f"{name}.yaml")
         # No run ends early because a joint opens: RK4 does not look at joints.
         (self.model,) = build_models(structure, ("nonlinear",), opening=MAX_OPENING)
-        self.name, self.motion, self.library = name, motion, compiled(folder, degree)
+        self.name, self.motion, self.loops = name, motion, compiled(folder, degree)
         u, numbers = np.array(motion.acceleration), self.model.numbers
         uplift = numbers[:, at.LAMBDA] * self.model.gravity
         lifts = 1.0001 * min(uplift / [-u.min(), u.max()])
@@ -114,7 +114,7 @@ class Yardstick:
         """What a loop in C gives each run."""
         results, sides = np.empty(RUNS), self.sides[loop != "plain_polynomial"]
         places = [ctypes.c_void_p(each.ctypes.data) for each in (sides, self.scales, results)]
-        getattr(self.library, loop)(places[0], ctypes.byref(self.record), ctypes.c_long(RUNS), *places[1:])
+        getattr(self.loops, loop)(places[0], ctypes.byref(self.record), ctypes.c_long(RUNS), *places[1:])
         return results
 
     def single(self) -> None:

@@ -72,7 +72,8 @@ def _marked(row: RankedStructure, say: Language = ENGLISH) -> str | None:
     """
     doubt = row.found.doubt
     if doubt is not None and say.key != ENGLISH.key:
-        doubt = say("Unusual or missing: {fields}.", fields=", ".join(each.split()[0] for each in doubt.split("; ")))
+        fields = [each.partition(" is ")[0].partition(" has ")[0] for each in doubt.split("; ")]
+        doubt = say("Unusual or missing: {fields}.", fields=", ".join(fields))
     return " ".join(filter(None, [doubt, caution_of(row, say)])) or None
 
 

@@ -60,6 +60,22 @@ def test_ended_before_the_first_run_it_has_said_where_the_old_store_is(sound, pl
     assert shown(command("fragility", sound.study, "--store", place, "--json").stdout) == sound.shown
 
 
+def test_a_name_that_another_process_takes_meanwhile_is_left_to_it(sound, place, monkeypatch):
+    theirs = place.with_name("study.before.runs")
+
+    def taken_at_once(*arguments):
+        name = numbered(*arguments)
+        if not theirs.exists():
+            shutil.copytree(place, theirs)
+        return name
+
+    numbered = store.numbered
+    monkeypatch.setattr(store, "numbered", taken_at_once)
+    said = command("fragility", sound.study, "--store", place, "--restart", code=0).stderr
+    ours = place.with_name("study.before-2.runs")
+    assert str(ours) in said and contents(theirs) == contents(ours) == contents(place) == contents(sound.store)
+
+
 def test_a_full_disk_is_named_and_loses_nothing(sound, place, monkeypatch):
     written = []
 

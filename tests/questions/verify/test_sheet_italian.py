@@ -382,6 +382,7 @@ def test_a_survey_and_its_page_are_italian(tmp_path):
         assert any("A 1.5" in text for text in shown_in(answer.view))
         page = (tmp_path / "p.html").read_text(encoding="utf-8")
         assert not english_in([rest_of(page)], *names)
+        assert ("Insolito o mancante: width." in page) == ("site" in options)
 
 
 def slots(text):
