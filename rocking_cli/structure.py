@@ -48,7 +48,8 @@ def kept(mechanism: Mechanism, what: Hashable, make: Callable[[], T]) -> T:
     """Return a result of a mechanism, made once while the mechanism lives and is among those that were last asked."""
     key = id(mechanism), what
     if (entry := _KEPT.pop(key, None)) is None:
-        entry = ref(mechanism, lambda _: _KEPT.pop(key, None)), make()
+        forget = _KEPT.pop  # bound, as Python empties modules before it forgets the last structures
+        entry = ref(mechanism, lambda _: forget(key, None)), make()
     _KEPT[key] = entry
     for oldest in list(_KEPT)[:-MOST_KEPT]:
         _KEPT.pop(oldest, None)

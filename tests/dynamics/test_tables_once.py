@@ -3,6 +3,7 @@
 import copy
 import gc
 import pickle
+import sys
 import weakref
 
 import numpy as np
@@ -85,3 +86,15 @@ def test_no_one_can_change_what_others_are_given(block):
     for shared in (model.numbers, model.tables[0].forces, model.tables[0].nodes):
         with pytest.raises(ValueError, match="read-only"):
             shared[0] = 0.0
+
+
+def test_a_structure_that_outlives_the_package_ends_in_silence(block, monkeypatch):
+    """At its end Python empties modules while structures are still alive."""
+    faults = []
+    monkeypatch.setattr(sys, "unraisablehook", faults.append)
+    passing = block.replace(width=0.8)
+    build_models(passing, ("nonlinear",))
+    monkeypatch.setattr(structure, "_KEPT", None)
+    del passing
+    gc.collect()
+    assert not faults

@@ -16,7 +16,7 @@ import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from pathlib import Path
 from typing import Annotated, Any, get_type_hints
 
@@ -278,11 +278,13 @@ class Store:
         if self.empty:
             self._make_folder()
         if text != self._text:
+            write = partial(write_whole, self.path / STUDY, lambda stream: stream.write(_sealed(text)))
             try:
-                write_whole(self.path / STUDY, lambda stream: stream.write(_sealed(text)))
-            except InputError as error:  # another process may have put the folder aside meanwhile
-                what, hint = "this store has been moved or deleted", "run the same command again to continue"
-                raise error if self.path.is_dir() else InputError(Problem(what, str(self.path), hint=hint)) from None
+                write()
+            except InputError:  # another process may have put the folder aside meanwhile, and made an empty one
+                if not self.path.is_dir():
+                    raise self._moved() from None
+                write()
         self._text, self.facts = text, json.loads(text)
         if measured.of_run:
             self._write(MEASURED, measured.of_run, self._usable())
@@ -371,7 +373,7 @@ class Store:
         Raises
         ------
         InputError
-            If files are damaged; it names them.
+            If files are damaged (it names them), or another process has put this store aside.
         """
         waiting, held = [NO_RUNS], 0
         for k in range(first // self.size, -(-stop // self.size)):
@@ -379,6 +381,8 @@ class Store:
                 rows = self.chunk(k)
             except DamagedFile:
                 raise self._damaged() from None
+            if not len(rows) and self._state != _state(self.path / STUDY):
+                raise self._moved()  # what was read before is of the store as it was
             begin, end = self.ends(k)
             if begin < first or end > stop:
                 rows = rows.select((rows.run >= first) & (rows.run < stop))
@@ -503,14 +507,17 @@ class Store:
             return
         now, used = Store(self.path), self._usable()
         now._load()
-        if now.empty:
+        same = not now.empty and (now.facts["hash"], now.size) == (self.facts["hash"], self.size)
+        if not same or now._key(used) != self._key(used):
+            raise self._moved(", with other fields, records or versions")
+        self._state = now._state
+
+    def _moved(self, how: str = "") -> InputError:
+        """Return the error for a store that another process has put aside."""
+        what = f"another process has started this study from scratch{how}"
+        if not (self.path / STUDY).exists():
             what = "this store has been moved or deleted"
-        elif (now.facts["hash"], now.size) != (self.facts["hash"], self.size) or now._key(used) != self._key(used):
-            what = "another process has started this study from scratch, with other fields, records or versions"
-        else:
-            self._state = now._state
-            return
-        raise InputError(Problem(what, str(self.path), hint="run the same command again to continue"))
+        return InputError(Problem(what, str(self.path), hint="run the same command again to continue"))
 
 
 class DamagedFile(Exception):

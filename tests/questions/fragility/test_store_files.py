@@ -200,3 +200,32 @@ def test_a_writer_whose_store_another_process_has_put_aside_stops(sound, place):
     shutil.copytree(sound.other.with_suffix(".runs"), place)
     with pytest.raises(InputError, match="another process has started this study from scratch"):
         writer.add(rows)
+
+
+def test_a_reader_whose_store_is_put_aside_between_two_readings_stops(sound, place):
+    """Else the shares would be of all runs, and what is read after them of none."""
+    reader = Store.reading(place)
+    first = [*reader.rows(0, RUNS)]
+    place.rename(place.with_name("aside.runs"))
+    with pytest.raises(InputError, match="this store has been moved or deleted"):
+        [*reader.rows(0, RUNS)]
+    place.mkdir()
+    shutil.copyfile(sound.store / "study.json", place / "study.json")  # begun anew, without a run
+    with pytest.raises(InputError, match="another process has started this study from scratch"):
+        [*reader.rows(0, RUNS)]
+    assert sum(map(len, first)) == RUNS and not [*Store.reading(place).rows(0, RUNS)]
+
+
+def test_a_description_goes_where_another_process_has_made_the_folder_anew(sound, tmp_path, monkeypatch):
+    """The first writing fails, as the folder went aside with what was written."""
+    write, failures = store.write_whole, [InputError("gone")]
+
+    def written(*given):
+        if failures:
+            raise failures.pop()
+        write(*given)
+
+    monkeypatch.setattr(store, "write_whole", written)
+    begun = Store.writing(tmp_path / "study.runs")
+    prepare(load_study(sound.study), begun)
+    assert (tmp_path / "study.runs" / "study.json").read_bytes() and not failures
