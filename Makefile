@@ -141,9 +141,9 @@ trust-check: setup  ## Whether that page is stale, two minutes; without the test
 	$(BIN)/python -m validation.trust "$(EXPERIMENTS)" --check
 
 KERNELS := out/kernels
-kernels:  ## Compile the kernels that are shipped, rocking_cli/dynamics/ready; PYTHON up to 3.13, READY=FOLDER for another place
+kernels: $(PACKAGE_STAMP)  ## Compile the kernels that are shipped, rocking_cli/dynamics/ready; READY=FOLDER for another place
 	$(PYTHON) -m venv $(KERNELS)
-	$(KERNELS)/$(notdir $(BIN))/python -m pip install --quiet "numba==0.61.2" "llvmlite==0.44.0" "ziglang==0.17.1" "numpy<2.3" "platformdirs>=4"
+	$(KERNELS)/$(notdir $(BIN))/python -m pip install --quiet platformdirs $$($(BIN)/python -c "from rocking_cli.dynamics.shipped import MADE_BY; print(*map('=='.join, MADE_BY.items()))")
 	$(KERNELS)/$(notdir $(BIN))/python scripts/make_kernels.py $(READY)
 
 same-kernels: setup  ## Make the shipped kernels anew, by Python 3.11 as they were, and compare them and what they compute

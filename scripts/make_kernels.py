@@ -2,9 +2,9 @@
 
     python scripts/make_kernels.py [FOLDER]
 
-Numba compiles each set of functions for a processor without any extensions, LLVM makes machine code of them for each
-kind of system, and the linker of Zig, which knows the libraries of all systems, makes a library of it. The versions are
-pinned, so that the same sources give the same bytes.
+Numba writes each set of functions in the language of LLVM. Clang, as Zig has it, makes code of it for each kind of
+system, that of lanes once a level of its processors, and Zig, which knows the libraries of all systems, links it. The
+versions are pinned, so that the same sources give the same bytes, by one version of Python: Numba reads its bytecode.
 """
 
 from __future__ import annotations
@@ -18,16 +18,18 @@ import re
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from importlib.metadata import version
+from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
 PROJECT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(PROJECT))
-# Before numba is imported: nothing of this machine may be in what is shipped.
+# Before numba is imported: nothing of this machine may be in what is shipped, and vectors are Clang's to make.
 for _name in [each for each in os.environ if each.startswith("NUMBA_")]:
     del os.environ[_name]
-os.environ["NUMBA_CPU_NAME"], os.environ["NUMBA_CPU_FEATURES"] = "generic", ""
+os.environ |= {"NUMBA_CPU_NAME": "generic", "NUMBA_CPU_FEATURES": "", "NUMBA_OPT": "1", "NUMBA_LOOP_VECTORIZE": "0"}
 
 import llvmlite.binding as llvm  # noqa: E402
 from by_numba import OPTIONS, compiled  # noqa: E402
@@ -37,36 +39,40 @@ from numba.extending import intrinsic  # noqa: E402
 from numba.np.arrayobj import populate_array  # noqa: E402
 
 from rocking_cli.dynamics import shipped  # noqa: E402
-from rocking_cli.dynamics.calling import FUNCTIONS, SETS, KernelSet, Layout, symbol  # noqa: E402
+from rocking_cli.dynamics.calling import FUNCTIONS, LANES, SETS, STEPS, KernelSet, Layout, symbol  # noqa: E402
 
 # Without numba's runtime: what would allocate memory or count references does not compile.
 AHEAD = {"_nrt": False, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 SYSTEMS = {
-    "linux-x86_64.so": ("x86_64-unknown-linux-musl", "x86_64-linux-musl"),
-    "linux-aarch64.so": ("aarch64-unknown-linux-musl", "aarch64-linux-musl"),
-    "darwin-x86_64.dylib": ("x86_64-apple-macosx11.0.0", "x86_64-macos.11.0"),
-    "darwin-aarch64.dylib": ("arm64-apple-macosx11.0.0", "aarch64-macos.11.0"),
-    "win32-x86_64.dll": ("x86_64-pc-windows-gnu", "x86_64-windows-gnu"),
+    "linux-x86_64.so": "x86_64-linux-musl",
+    "linux-aarch64.so": "aarch64-linux-musl",
+    "darwin-x86_64.dylib": "x86_64-macos.11.0",
+    "darwin-aarch64.dylib": "aarch64-macos.11.0",
+    "win32-x86_64.dll": "x86_64-windows-gnu",
+    "win32-aarch64.dll": "aarch64-windows-gnu",
+    "wasm.wasm": "wasm64-freestanding",
 }
-"""The libraries, and what LLVM and Zig call the systems. Those of Linux need no library of C, so any will do."""
-LINKING = {".so": "-Wl,-z,defs", ".dylib": "-Wl,-dead_strip", ".dll": "-Wl,-Brepro"}
-"""What the linker needs to be told: that nothing may be missing, which the others see to, and to keep no time."""
+"""The libraries, and what Zig calls the systems. Those of Linux need no library of C, so any will do."""
+LINKING = {
+    ".so": ["-shared", "-Wl,-z,defs"],
+    ".dylib": ["-shared", "-Wl,-dead_strip"],
+    ".dll": ["-shared", "-Wl,-Brepro"],
+    ".wasm": ["-Wl,--no-entry,--export-dynamic,--export-memory,--import-symbols"],
+}
+"""What the linker needs to be told: that nothing may be missing, which others see to, to keep no time, to import."""
+LEVELS = {
+    "x86_64": {
+        "v1": ("", r"mulpd\s.*%xmm"),
+        "v3": ('"target-cpu"="x86-64-v3" "target-features"="" "prefer-vector-width"="256" ', r"mulpd\s.*%ymm"),
+        "v4": ('"target-cpu"="x86-64-v4" "target-features"="" "prefer-vector-width"="512" ', r"mulpd\s.*%zmm"),
+    },
+    "aarch64": {"v1": ("", r"fmul(\.|\s+v\d+\.)2d")},
+    "wasm64": {},  # a call by address needs tables that browsers do not know: one history at a time
+}
+"""Levels of each kind of processor, the attributes of functions for them, and the instruction that shows vectors."""
 EXACT = ("fabs", "sqrt")  # of IEEE 754: every processor here has instructions for them
-OWN = {
-    ".so": "",
-    # What LLVM calls instead of `memset` there.
-    ".dylib": "".join(
-        f"""define hidden void @{name}(i8* %0, i64 %1) {{
-  %3 = call i8* @memset(i8* %0, i32 0, i64 %1)
-  ret void
-}}
-"""
-        for name in ("bzero", "__bzero")
-    ),
-    # What Windows calls when it loads a library; there is nothing to do.
-    ".dll": "define i32 @DllMainCRTStartup(i8* %0, i32 %1, i8* %2) { ret i32 1 }",
-}
-"""What only libraries of one kind have."""
+FUSED = re.compile(r"^\s+(?:v?fn?m(?:add|sub|la|ls)|\w+\.relaxed)\w*", re.MULTILINE)
+"""Instructions that round a product and a sum once."""
 
 ELEMENTS = {"R": types.float64, "I": types.int64}
 POINTERS = {kind: types.CPointer(element) for kind, element in ELEMENTS.items()}
@@ -105,6 +111,24 @@ def element(context, row, place):  # type: ignore[no-untyped-def]
     return row.dtype(row, place), make
 
 
+@intrinsic
+def call_at(context, address, whole, real, places):  # type: ignore[no-untyped-def]
+    """Call the entry of another set, which is at an address, with the addresses of its rows."""
+
+    def make(context, builder, signature, given):  # type: ignore[no-untyped-def]
+        kind = ir.FunctionType(ir.IntType(32), [ir.IntType(64).as_pointer()] * 3)
+        rows = [builder.inttoptr(each, kind.args[0]) for each in given[1:]]
+        return builder.call(builder.inttoptr(given[0], kind.as_pointer()), rows)
+
+    return types.int32(types.int64, types.int64, types.int64, types.int64), make
+
+
+@njit(**OPTIONS, **AHEAD)
+def evaluate(step, rows, pairs, rtol):  # type: ignore[no-untyped-def]
+    """In place of `lanes.evaluate`."""
+    call_at(step[0], step[1], step[2], step[3])
+
+
 class Writing:
     """The source of an entry: what each argument of the kernel is, in terms of the three rows."""
 
@@ -134,6 +158,7 @@ class Writing:
 def entry_of(kernel: KernelSet) -> Any:
     """The compiled entry of a set, as numba has it."""
     namespace = compiled(importlib.import_module(kernel.module), **AHEAD)
+    namespace["evaluate"] = evaluate
     writing = Writing()
     arguments = ", ".join(map(writing.argument, kernel.arguments))
     source = f"def entry(whole, real, places):\n    {kernel.function}({arguments})\n    return 0\n"
@@ -143,19 +168,16 @@ def entry_of(kernel: KernelSet) -> Any:
     return njit(signature, **OPTIONS, **AHEAD)(space["entry"]).overloads[signature.args]
 
 
-def module_of(kernel: KernelSet) -> llvm.ModuleRef:
+def text_of(kernel: KernelSet) -> str:
     """A set as a module of LLVM, whose only function to be called from outside has the name of the set."""
     compiled = entry_of(kernel)
     module = llvm.parse_assembly(compiled.library.get_llvm_str())
-    inner = next(each for each in module.functions if each.name == compiled.fndesc.llvm_func_name)
     outer = ir.Module(name=kernel.name)
     outer.triple, outer.data_layout = module.triple, module.data_layout
-    whole, real, status = ir.IntType(64), ir.DoubleType(), ir.IntType(32)
-    raised = ir.LiteralStructType([ir.IntType(8).as_pointer(), status, ir.IntType(8).as_pointer(),
-                                   ir.IntType(8).as_pointer(), status]).as_pointer()  # fmt: skip
-    rows = [whole.as_pointer(), real.as_pointer(), whole.as_pointer()]
-    numba_way = ir.FunctionType(status, [whole.as_pointer(), raised.as_pointer(), *rows])
-    called = ir.Function(outer, numba_way, inner.name)
+    whole, status, place = ir.IntType(64), ir.IntType(32), ir.PointerType()
+    raised = ir.LiteralStructType([place, status, place, place, status]).as_pointer()
+    rows = [place] * 3
+    called = ir.Function(outer, ir.FunctionType(status, [place, place, *rows]), compiled.fndesc.llvm_func_name)
     function = ir.Function(outer, ir.FunctionType(status, rows), symbol(kernel.name))
     builder = ir.IRBuilder(function.append_basic_block())
     builder.ret(builder.call(called, [builder.alloca(whole), builder.alloca(raised), *function.args]))
@@ -163,19 +185,25 @@ def module_of(kernel: KernelSet) -> llvm.ModuleRef:
     for each in (*module.functions, *module.global_variables):
         if not each.is_declaration and each.name != symbol(kernel.name):
             each.linkage = "internal"
-    passes = llvm.ModulePassManager()
-    passes.add_global_dce_pass()
-    passes.add_strip_dead_prototypes_pass()
-    passes.run(module)
-    for number, each in enumerate(module.global_variables):  # numba names them by addresses
-        each.name = f"{kernel.name}.{number}"
-    module.name = kernel.name
-    module.verify()
-    return module
+    # Clang knows better for which system it is.
+    return re.sub(r"^(?:target|source_filename) .*\n", "", str(module), flags=re.MULTILINE)
 
 
-def called_by_address(text: str) -> str:
-    """A module, as text, whose calls of C go through addresses that are handed to the library.
+def versions(kernel: KernelSet, text: str, processor: str) -> dict[str, str]:
+    """The modules of a set for a kind of processor: one, or one a level."""
+    if not kernel.lanes:
+        return {kernel.name: text}
+    name = f"@{symbol(kernel.name)}("
+    return {
+        level: re.sub(r"^(define .*\)[^)]*)\{$", rf"\1{attributes}{{", text, flags=re.MULTILINE).replace(
+            name, f"@{symbol(kernel.name, level)}("
+        )
+        for level, (attributes, _) in LEVELS[processor].items()
+    }
+
+
+def called_by_address(text: str, imported: bool) -> str:
+    """A module, as text, whose calls of C go through addresses that are handed to the library, or are imports.
 
     What LLVM itself puts a call for, `ceil`, `floor` and those of memory, has the name of C within the library; the
     others get one that LLVM does not know, so that it takes no two of them together.
@@ -191,11 +219,14 @@ def called_by_address(text: str) -> str:
         if not known:
             text = re.sub(rf"^declare .*@(?:llvm\.{name}\.f64|{name})\(.*\n", "", text, flags=re.MULTILINE)
             text = re.sub(rf"@(?:llvm\.{name}\.f64|{name})\(", f"@{entry}(", text)
-        signature, given = f"{result} ({', '.join(types_in)})", [f"{each} %{k}" for k, each in enumerate(types_in)]
+        if imported:
+            text += "" if known else f"declare {result} @{entry}({', '.join(types_in)})\n"
+            continue
+        given = [f"{each} %{k}" for k, each in enumerate(types_in)]
         text += f"""
-@{symbol(name)} = global {signature}* null
+@{symbol(name)} = global ptr null
 define {"hidden" if known else "internal"} {result} @{entry}({", ".join(given)}) {{
-  %address = load {signature}*, {signature}** @{symbol(name)}
+  %address = load ptr, ptr @{symbol(name)}
   %result = tail call {result} %address({", ".join(given)})
   ret {result} %result
 }}
@@ -205,17 +236,23 @@ define {"hidden" if known else "internal"} {result} @{entry}({", ".join(given)})
 
 def library(text: str, name: str) -> bytes:
     """The library of a system. What calls anything that is not in it is refused by the linker."""
-    triple, system = SYSTEMS[name]
-    module = llvm.parse_assembly(text + OWN[Path(name).suffix])
-    processor = "x86-64" if triple.startswith("x86_64") else "generic"
-    target = llvm.Target.from_triple(triple)
-    machine = target.create_target_machine(cpu=processor, opt=3, reloc="pic", codemodel="default")
-    module.triple, module.data_layout = triple, str(machine.target_data)
-    module.verify()
     with tempfile.TemporaryDirectory() as folder:
-        Path(folder, "kernels.o").write_bytes(machine.emit_object(module))
-        zig = [sys.executable, "-m", "ziglang", "cc", "-target", system, "-shared", "-nostdlib", "-s"]
-        subprocess.run([*zig, LINKING[Path(name).suffix], "-o", name, "kernels.o"], cwd=folder, check=True)
+        kind = "-mcpu=generic" if name == "wasm.wasm" else "-fPIC"
+
+        def zig(*arguments: str) -> None:
+            command = [sys.executable, "-m", "ziglang", "cc", "-w", "-O3", kind, "-target", SYSTEMS[name]]
+            subprocess.run([*command, *arguments], cwd=folder, check=True)
+
+        Path(folder, "kernels.ll").write_text(text, encoding="utf-8")
+        zig("-S", "kernels.ll", "-o", "kernels.s")
+        code = Path(folder, "kernels.s").read_text(encoding="utf-8")
+        if fused := FUSED.search(code):
+            sys.exit(f"{name} would round a product and a sum once: {fused[0]}")
+        for level, (_, vectors) in LEVELS[SYSTEMS[name].partition("-")[0]].items():
+            if not re.search(vectors, code):
+                sys.exit(f"{name} would have no vectors at level {level}")
+        linked = ("-nostdlib", "-fno-builtin", "-s", *LINKING[Path(name).suffix])
+        zig(*linked, "-o", name, "kernels.s", str(PROJECT / "scripts" / "system.c"))
         return Path(folder, name).read_bytes()
 
 
@@ -224,22 +261,33 @@ def main(folder: Path) -> None:
     given = {name: version(name) for name in shipped.MADE_BY}
     if given != shipped.MADE_BY:
         sys.exit(f"the kernels are made by {shipped.MADE_BY}, not by {given}: see `make kernels`")
-    llvm.initialize()
-    llvm.initialize_all_targets()
-    llvm.initialize_all_asmprinters()
-    first, *others = map(module_of, SETS.values())
-    for each in others:
-        first.link_in(each)
-    text = called_by_address(str(first))
+    # Numba counts what it compiles in names: a process for each set.
+    with ProcessPoolExecutor(mp_context=get_context("spawn"), max_tasks_per_child=1) as pool:
+        texts = dict(zip(SETS, pool.map(text_of, SETS.values()), strict=True))
+    for_processor = {}
+    for processor in LEVELS:
+        modules = [
+            llvm.parse_assembly(each)
+            for name, kernel in SETS.items()
+            if LEVELS[processor] or kernel not in (LANES, STEPS)
+            for each in versions(kernel, texts[name], processor).values()
+        ]
+        for each in modules[1:]:
+            modules[0].link_in(each)
+        for_processor[processor] = called_by_address(str(modules[0]), imported=processor == "wasm64")
+    with ThreadPoolExecutor(os.cpu_count()) as threads:
+        contents = threads.map(lambda name: library(for_processor[SYSTEMS[name].partition("-")[0]], name), SYSTEMS)
     folder.mkdir(parents=True, exist_ok=True)
     files = {}
-    for name in SYSTEMS:
-        content = library(text, name)
+    for name, content in zip(SYSTEMS, contents, strict=True):
         (folder / name).write_bytes(content)
         files[name] = hashlib.sha256(content).hexdigest()
         print(f"{name}: {len(content) / 1024:.0f} KB")
-    made = {"python": ".".join(platform.python_version_tuple()[:2]), **given}
-    made["llvm"] = ".".join(map(str, llvm.llvm_version_info))
+    made = {
+        "python": ".".join(platform.python_version_tuple()[:2]),
+        **given,
+        "llvm": ".".join(map(str, llvm.llvm_version_info)),
+    }
     manifest = {"source": shipped.source_hash(), "made_by": made, "files": files}
     (folder / shipped.MANIFEST_FILE).write_text(json.dumps(manifest, indent=1) + "\n", encoding="utf-8")
 

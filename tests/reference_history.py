@@ -44,10 +44,14 @@ def pieces(dt, u, vertical=None):
 
 @dataclass
 class Motion:
-    """Impacts as (time, direction that ends, rate before), peaks by direction, upward crossings of phi_cr, the end."""
+    """Impacts as (time, direction that ends, rate before), peaks by direction, upward crossings of phi_cr, the end.
+
+    `rates` are the largest of |phi'| by direction.
+    """
 
     impacts: list = field(default_factory=list)
     peaks: dict = field(default_factory=lambda: {1: 0.0, -1: 0.0})
+    rates: dict = field(default_factory=lambda: {1: 0.0, -1: 0.0})
     crossings: list = field(default_factory=list)
     uplift: float | None = None
     ended: str = "stopped"
@@ -201,6 +205,12 @@ class Nonlinear:
                     x -= (z[index] - level) / f(x, z)[index]
                 return x, exact(x)
 
+            def gather(a, za, b, zb, dense=dense):
+                speeds = [za[1], zb[1]]
+                if f(a, za)[1] * f(b, zb)[1] < 0:
+                    speeds.append(dense(brentq(lambda t: f(t, dense(t))[1], a, b, xtol=1e-16))[1])
+                motion.rates[s] = max(motion.rates[s], *np.abs(speeds).tolist())
+
             grid = np.linspace(t0, solver.t, 9)
             z = dense(grid)
             z[:, 0], z[:, -1] = y0, solver.y
@@ -215,7 +225,9 @@ class Nonlinear:
                         motion.crossings.append(start + root(0, self.phi_cr[s], ta, tb)[0])
                     if zb[0] < za[0] and zb[0] <= 0:
                         x, hit = (tb, zb) if zb[0] == 0 else root(0, 0.0, ta, tb)
+                        gather(ta, za, x, hit)
                         return x, hit, True
+                    gather(ta, za, tb, zb)
                 if z[0, i + 1] > 0.99 * self.limit[s]:
                     motion.ended = "fallen"
                     return b, z[:, i + 1], False
@@ -255,7 +267,7 @@ class Linear:
 
     def follow(self, dt, samples, release=0.0, impacts_after=3, most_impacts=10**6):
         u, dt = [mpf(float(x)) for x in samples], mpf(dt)
-        motion = Motion(peaks={1: mpf(0), -1: mpf(0)})
+        motion = Motion(peaks={1: mpf(0), -1: mpf(0)}, rates={1: mpf(0), -1: mpf(0)})
         s = -1 if release < 0 else 1
         phi, rate = abs(mpf(release)) * self.phi_cr[s], mpf(0)
         motion.peaks[s] = phi
@@ -315,6 +327,12 @@ class Linear:
             grow, fade = mp.exp(p * x), mp.exp(-p * x)
             return balance + m * x + a * grow + c * fade, m + p * (a * grow - c * fade)
 
+        def gather(x):
+            # phi'' = 0 is a z^2 + c = 0.
+            turn = mp.log(-c / a) / (2 * p) if a * c < 0 else mpf(0)
+            speeds = [abs(at(y)[1]) for y in (mpf(0), turn, x) if 0 <= y <= x]
+            motion.rates[s] = max(motion.rates[s], *speeds)
+
         # phi' = 0 is p a z^2 + m z - p c = 0 in z = e^(px).
         span = end - tau
         turns = []
@@ -334,7 +352,9 @@ class Linear:
                     motion.crossings.append(start + tau + self._root(at, self.phi_cr[s], xa, xb))
             elif vb <= 0:
                 x = self._root(at, mpf(0), xa, xb)
+                gather(x)
                 return tau + x, mpf(0), at(x)[1], True
+        gather(span)
         return end, values[-1], at(span)[1], False
 
     @staticmethod

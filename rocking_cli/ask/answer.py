@@ -197,9 +197,8 @@ class Answer(Generic[R]):
         --------
         >>> import matplotlib.pyplot as plt
         >>> import rocking_cli as rk
-        >>> block = rk.Block(name="pedestal", width=0.7, height=2.8)
         >>> figure, (left, right) = plt.subplots(1, 2, layout="constrained")
-        >>> rk.spectrum(block, "sine:0.4g:0.8s", count=4).plot(ax=left) is figure
+        >>> rk.overturning_map(points=24).plot(ax=left) is figure
         True
         """
         _check_asked(self.figure, asked)

@@ -214,7 +214,9 @@ class LazyGroup(click.Group):
             terminal.debug_traceback(error)
             ctx.exit(1)
         finally:
-            terminal.detail(f"took {monotonic() - began:.2f} s")
+            computing = sys.modules.get("rocking_cli.dynamics.ways")  # imported by what may compute histories
+            way = computing and computing.last
+            terminal.detail(f"took {monotonic() - began:.2f} s" + (f", kernels {way}" if way else ""))
 
 
 @click.group(

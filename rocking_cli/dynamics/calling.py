@@ -23,7 +23,7 @@ _SIDE: Layout = ("Side", ("f", "f", "f", "f"))
 
 def _run(forces: str) -> tuple[Layout, ...]:
     """Arguments of `kernels.run`."""
-    arrays = ("I2", "R3", forces, "R3", "R2", "R2", "I2", "R2", "R1", "R1", "R1", "R1", "R1", _JOINTS)
+    arrays = ("I2", "R3", forces, "R3", "R3", "R2", "R2", "I2", "R2", "R1", "R1", "R1", "R1", "R1", "R1", _JOINTS)
     return ("i", "i", "R2", ("Deck", arrays), "f", "i", "b", _SAMPLES, "R2", _ROOM)
 
 
@@ -39,14 +39,19 @@ class KernelSet:
         Module and name of the function in Python.
     arguments : tuple of Layout
         Layout of its arguments.
+    lanes : bool
+        Whether its loops are made of vectors, so that a library has it once for each of `LEVELS`.
     """
 
     name: str
     module: str
     function: str
     arguments: tuple[Layout, ...]
+    lanes: bool = False
 
 
+_LANES: Layout = ("Lanes", ("R1", "I2", "R2", "R3", "R3", "R2", "I2"))
+_DECK: Layout = _run("R3")[3]
 HISTORIES = KernelSet("histories", "rocking_cli.dynamics.kernels", "run", _run("R3"))
 TIED = KernelSet("tied", "rocking_cli.dynamics.kernels", "run", _run("R4"))
 """The same where vertical motion meets a tie: see `kernels.Deck.forces`."""
@@ -56,7 +61,15 @@ PULSES = KernelSet(
     "many",
     (("", (_SIDE, _SIDE)), "R2", "R1", "R1", "i", "i", "R2"),
 )
-SETS = {each.name: each for each in (HISTORIES, TIED, PULSES)}
+LANES = KernelSet(
+    "lanes",
+    "rocking_cli.dynamics.lanes",
+    "run_lanes",
+    ("i", "i", "R2", _DECK, "I1", "i", "f", "i", "b", _SAMPLES, "R2", _LANES),
+)
+STEPS = KernelSet("steps", "rocking_cli.dynamics.lanes", "steps", ("R1", "i", "f"), lanes=True)
+"""What `LANES` calls at each step."""
+SETS = {each.name: each for each in (HISTORIES, TIED, PULSES, LANES, STEPS)}
 
 ARRAYS = {
     f"{kind}{axes}": (np.dtype(dtype), axes)
@@ -66,13 +79,16 @@ ARRAYS = {
 
 FUNCTIONS = {
     **dict.fromkeys(("asin", "ceil", "cos", "cosh", "expm1", "floor", "log", "log1p", "sin", "sinh"), "double double"),
-    "pow": "double double double",
-    "memcpy": "i8* i8* i8* i64",
-    "memset": "i8* i8* i32 i64",
+    "memcpy": "ptr ptr ptr i64",
+    "memset": "ptr ptr i32 i64",
 }
 """Functions of C that kernels may call, with the types that LLVM knows the result and the arguments by."""
 
 
-def symbol(name: str) -> str:
-    """The name that a library has for the entry of a set, or for the place of a function of C."""
-    return f"rocking_{name}"
+LEVELS = ("v4", "v3", "v1")
+"""Levels of processors, the highest first, as in x86-64-v4; every processor has the last one."""
+
+
+def symbol(name: str, level: str = "") -> str:
+    """The name that a library has for the entry of a set, at a level if it has some, or for a function of C."""
+    return f"rocking_{name}_{level}" if level else f"rocking_{name}"

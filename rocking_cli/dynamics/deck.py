@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.arrays import Bools, Integers, Reals
-from rocking_cli.dynamics import kernels, openings, stepping, ways
-from rocking_cli.dynamics.calling import HISTORIES, TIED
+from rocking_cli.dynamics import kernels, lanes, openings, stepping, ways
+from rocking_cli.dynamics.calling import HISTORIES, LANES, STEPS, TIED
 from rocking_cli.dynamics.joints import laid_out
 from rocking_cli.dynamics.model import Model
 from rocking_cli.dynamics.outcome import Outcome
@@ -29,6 +29,7 @@ RELEASE_DT = 0.005  # s, for a free motion without a record
 MAX_IMPACTS = 20_000  # impacts after the record; with more, a structure is still rocking (eta = 0.999 takes 14,000)
 NEVER_LIFTED = np.full(stepping.MARKS, np.nan)  # marks of a run that ends as it began, at rest
 NEVER_LIFTED[[stepping.PEAK, stepping.PEAK + 1, stepping.IMPACTS, stepping.ENDED, stepping.SIDE]] = 0.0
+NEVER_LIFTED[stepping.RATE_PEAK : stepping.RATE_PEAK + 2] = 0.0
 NEVER_LIFTED[[openings.LARGEST, openings.LONGEST]] = 0.0
 NEVER_LIFTED[stepping.STATUS] = kernels.AT_REST
 
@@ -60,6 +61,39 @@ def run_deck(
         np.empty(4 * joint_count, np.int64),
     )
     run(first, len(runs) if stop is None else stop, runs, deck, rtol, most_impacts, brief, samples, marks, room)
+
+
+def fit_lanes(deck: kernels.Deck, runs: Reals) -> Bools:
+    """Return the runs that lanes can follow: of structures with smooth forces, without vertical motion, shape (n,)."""
+    if ways.lanes(STEPS) is None or deck.forces.ndim == 4:
+        return np.zeros(len(runs), np.bool_)
+    smooth = np.all(deck.numbers[:, :, stepping.PAIRS] > 0, axis=1)
+    level = deck.records[:, kernels.V_SIZE] == 0
+    structure, record = (runs[:, column].astype(np.int64) for column in (kernels.STRUCTURE, kernels.RECORD))
+    return np.asarray(smooth[structure] & level[record])
+
+
+def run_lanes(
+    deck: kernels.Deck, runs: Reals, marks: Reals, first: int, stop: int, *, rtol: float, most_impacts: int
+) -> None:
+    """Run histories that fit lanes as `run_deck` does, with the same bits, several at a time."""
+    joint_count = int(deck.joints.sizes[:, 1].max(initial=0))
+    memory = lanes.Lanes(
+        np.zeros(lanes.ROWS * lanes.LANES),
+        np.zeros((lanes.LANES, lanes.INTEGERS), np.int64),
+        np.zeros((lanes.LANES, lanes.REALS)),
+        np.zeros((lanes.LANES, 2, stepping.COLUMNS)),
+        np.zeros((lanes.LANES, joint_count, openings.KEPT)),
+        np.zeros((lanes.LANES, openings.NOTES)),
+        np.zeros((lanes.LANES, 4 * joint_count), np.int64),
+    )
+    samples = kernels.Samples(1, NO_VALUES, NO_VALUES, np.empty((0, 3)), np.empty(stepping.MARKS))
+    pairs = int(deck.numbers[runs[first:stop, kernels.STRUCTURE].astype(np.int64), :, stepping.PAIRS].max())
+    prepare = ways.lanes(STEPS)
+    assert prepare is not None
+    step, alive = prepare(memory.rows, pairs, rtol)
+    ways.kernel(LANES)(first, stop, runs, deck, step, pairs, rtol, most_impacts, True, samples, marks, memory)
+    del alive  # the arguments of the step, until here
 
 
 def check_rtol(rtol: float) -> None:
@@ -113,8 +147,9 @@ def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
     failed = (status == kernels.STALLED) | np.isnan(status)
     unknown = np.isfinite(passed) & ~overturned & ~failed
     fell_to = np.where(overturned, 1 - 2 * marks[:, stepping.SIDE], 0).astype(np.int64)
-    until = np.where(unknown[:, None], openings.PASSED_PEAK, stepping.PEAK) + np.arange(2)
-    peaks = np.take_along_axis(marks, until, axis=1)
+    peaks = np.take_along_axis(
+        marks, np.where(unknown[:, None], openings.PASSED_PEAK, stepping.PEAK) + np.arange(2), axis=1
+    )
     end = np.where(unknown, passed, np.where(overturned & ~np.isnan(crossed), crossed, np.inf))
     warned = np.where(marks[:, openings.WARNED] <= end, marks[:, openings.WARNED], np.nan)
     ratio = np.maximum(*(peaks / phi_cr).T)
@@ -128,6 +163,8 @@ def read_marks(marks: Reals, phi_cr: Reals, reach: Reals) -> Outcomes:
         peak_positive=np.where(fell_to == 1, np.nan, peaks[:, 0]),
         peak_negative=np.where(fell_to == -1, np.nan, peaks[:, 1]),
         peak_ratio=np.where(overturned, np.nan, ratio),
+        peak_rate_positive=np.where(fell_to == 1, np.nan, marks[:, stepping.RATE_PEAK]),
+        peak_rate_negative=np.where(fell_to == -1, np.nan, marks[:, stepping.RATE_PEAK + 1]),
         overturning_time=np.where(overturned, marks[:, stepping.CROSSED], np.nan),
         uplift_time=np.where(unknown & (uplift > passed), np.nan, uplift),
         impact_count=np.nan_to_num(impacts).astype(np.int64),
@@ -150,7 +187,7 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
     for model in models:
         structures.append((cells, len(model.forces), model.is_linear))
         cells += len(model.forces)
-    us, vs, aheads, v_aheads, v_aboves = _Row(), _Row(), _Row(), _Row(), _Row()
+    us, vs, aheads, blocks, v_aheads, v_aboves = _Row(), _Row(), _Row(), _Row(), _Row(), _Row()
     any_vertical = any(motion is not None and motion.vertical is not None for motion in motions)
     tied = any_vertical and any(len(model.held) for model in models)
     for motion in motions:
@@ -158,7 +195,8 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
         u, dt = (motion.acceleration, motion.dt) if motion is not None else (NO_VALUES, RELEASE_DT)
         v, v_dt = (up.acceleration, up.dt) if up is not None else (NO_VALUES, 1.0)
         length = max(u.size, ceil((v.size - 1) * v_dt / dt) + 1)
-        places = (*us.add(u), *vs.add(v), *aheads.add(_strongest_to_come(np.abs(u), 1.0, length)))
+        ahead = _strongest_to_come(np.abs(u), 1.0, length)
+        places = (*us.add(u), *vs.add(v), *aheads.add(ahead), *blocks.add(_strongest_in_blocks(np.abs(u))))
         if any_vertical:
             for row, strength in ((v_aheads, -v), (v_aboves, v)):  # downward and upward ground acceleration
                 row.add(_strongest_to_come(np.maximum(strength, 0.0), dt / v_dt, length))
@@ -167,6 +205,7 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
         np.array(structures, dtype=np.int64),
         np.array([model.numbers for model in models]),
         _joined([_three_forces(model) if tied else model.forces for model in models]),
+        np.array([model.smooth for model in models]),
         _joined([model.angles for model in models]),
         _joined([model.certain for model in models]),
         _joined([model.held[..., 4] if len(model.held) else np.zeros(model.forces.shape[:2]) for model in models])
@@ -177,6 +216,7 @@ def lay_out(models: Sequence[Model], motions: Sequence[GroundMotion | None]) -> 
         us.joined(),
         vs.joined(),
         aheads.joined(),
+        blocks.joined(),
         v_aheads.joined(),
         v_aboves.joined(),
         openings.Joints(*laid_out([model.joints for model in models])),
@@ -230,6 +270,15 @@ def _strongest_to_come(strength: Reals, stride: float, length: int) -> Reals:
             places = np.floor(np.arange(length) * stride).astype(np.int64)
             result = ahead[np.minimum(places, ahead.size - 1)]
     return result
+
+
+def _strongest_in_blocks(strength: Reals) -> Reals:
+    """Return the largest strength of every `BLOCK` samples together with the next one."""
+    starts = np.arange(0, strength.size, kernels.BLOCK)
+    if not starts.size:
+        return NO_VALUES
+    first_of_next = np.append(strength[starts[1:]], 0.0)
+    return np.asarray(np.maximum(np.maximum.reduceat(strength, starts), first_of_next))
 
 
 def _joined(arrays: Sequence[NDArray[Number]]) -> NDArray[Number]:

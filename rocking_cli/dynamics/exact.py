@@ -103,9 +103,11 @@ def exact_response(
     sides = sides_of(equivalence, kappa=kappa, gravity=gravity)
     blocks = (equivalence.positive, equivalence.negative)
     answer = solve(sides, segments_of(pulse), polarity_of(polarity))
-    ratios = (answer.peak_positive, answer.peak_negative)
-    positive, negative = (x * block.phi_cr for x, block in zip(ratios, blocks, strict=True))
-    return replace(answer, peak_positive=positive, peak_negative=negative)
+    rotations, rates = {}, {}
+    for name, block in zip(("positive", "negative"), blocks, strict=True):
+        rotations[f"peak_{name}"] = getattr(answer, f"peak_{name}") * block.phi_cr
+        rates[f"peak_rate_{name}"] = getattr(answer, f"peak_rate_{name}") * block.p * block.phi_cr
+    return replace(answer, **rotations, **rates)
 
 
 def sides_of(equivalence: Equivalence, *, kappa: int, gravity: float) -> tuple[Side, Side]:
@@ -145,7 +147,7 @@ def polarity_of(polarity: int) -> int:
 
 
 def solve(sides: tuple[Side, Side], segments: pulse_motion.Rows, polarity: int = 1) -> ExactResponse:
-    """Return the response, with both peaks over the phi_cr of their direction, in any consistent units."""
+    """Return the response, with peaks over the phi_cr, and peak rates over the p phi_cr, of their direction."""
     log = [0.0] * (COLUMNS * MAX_IMPACTS)
     motion = pulse_motion.follow(sides, segments, float(polarity), 1.0, True, log)
     if motion.status == pulse_motion.SPENT:
@@ -162,6 +164,8 @@ def solve(sides: tuple[Side, Side], segments: pulse_motion.Rows, polarity: int =
         peak_positive=nan if fell_to == 1 else motion.peaks[0],
         peak_negative=nan if fell_to == -1 else motion.peaks[1],
         peak_ratio=nan if overturned else max(motion.peaks),
+        peak_rate_positive=nan if fell_to == 1 else motion.rates[0],
+        peak_rate_negative=nan if fell_to == -1 else motion.rates[1],
         overturning_time=motion.crossed if overturned and isfinite(motion.crossed) else nan,
         uplift_time=motion.uplift,
         impact_count=motion.impacts,
@@ -291,7 +295,7 @@ def exact_pulse(a: float, omega: float, eta: float, shape: str = "sine") -> Exac
     Returns
     -------
     ExactResponse
-        Rotations over phi_cr, and times tau = p t from the start of the pulse.
+        Rotations over phi_cr, times tau = p t from the start of the pulse, and angular velocities over p phi_cr.
 
     Raises
     ------

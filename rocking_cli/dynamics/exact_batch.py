@@ -77,12 +77,14 @@ def exact_many(
             many(sides, segments, factors, stretches, first, stop, results)
 
         in_parts(follow, n, PULSES_PER_TASK, threads, progress)
-    status, side, impacts, uplift_time, *ratios = results.T
+    status, side, impacts, uplift_time, *peaks = results.T
     overturned = status == pulse_motion.OVERTURNED
     fell_to = np.where(overturned, 1 - 2 * side, 0).astype(np.int64)
-    positive, negative = (
-        np.where(fell_to == int(direction), np.nan, ratio * equivalence[direction].phi_cr)
-        for direction, ratio in zip(Direction, ratios, strict=True)
+    blocks = [equivalence[direction] for direction in Direction]
+    units = [*(block.phi_cr for block in blocks), *(each.rate for each in sides)]
+    positive, negative, positive_rate, negative_rate = (
+        np.where(fell_to == int(direction), np.nan, peak * unit)
+        for direction, peak, unit in zip([*Direction] * 2, peaks, units, strict=True)
     )
     return Outcome(
         still_rocking=np.zeros(n, dtype=bool),
@@ -90,7 +92,9 @@ def exact_many(
         fell_to=fell_to,
         peak_positive=positive,
         peak_negative=negative,
-        peak_ratio=np.where(overturned, np.nan, np.maximum(*ratios)),
+        peak_ratio=np.where(overturned, np.nan, np.maximum(*peaks[:2])),
+        peak_rate_positive=positive_rate,
+        peak_rate_negative=negative_rate,
         overturning_time=np.full(n, np.nan),
         uplift_time=uplift_time.copy(),
         impact_count=np.nan_to_num(impacts).astype(np.int64),

@@ -38,6 +38,7 @@ from rocking_cli.dynamics.openings import (
     WARNED_PEAK,
     WEIGHTLESS,
     Joints,
+    bears,
     look,
     passed,
     quiet,
@@ -47,9 +48,11 @@ from rocking_cli.dynamics.openings import (
     strike,
     watch_of,
 )
+from rocking_cli.dynamics.rates import angle, keep_rate, may_have_peak
 from rocking_cli.dynamics.stepping import (
     BOUND_ETA,
     COLUMNS,
+    DONE,
     ENDED,
     ETA,
     FIRST_UPLIFT,
@@ -67,14 +70,20 @@ from rocking_cli.dynamics.stepping import (
     Q_CR,
     Q_END,
     RATE,
+    RATE_PEAK,
     REACHED,
     REST,
     SIDE,
     STATUS,
+    STEP,
     STUCK,
+    Flight,
+    ForceTables,
     Ground,
+    Inside,
     Law,
     P,
+    Search,
     State,
     advance,
     balance,
@@ -82,18 +91,20 @@ from rocking_cli.dynamics.stepping import (
     falls,
     force,
     inlined,
-    inspect,
+    judged,
     law_of,
     misses,
     passes,
     rises,
+    set_out,
     up_to_corner,
 )
 from rocking_cli.dynamics.stepping import SOURCE as SOURCE
 
 # Columns of `records`, one row a ground motion: first sample and number of samples of either component, and of the
-# strongest that is still to come; intervals.
-U_FIRST, U_SIZE, V_FIRST, V_SIZE, AHEAD_FIRST, AHEAD_SIZE, DT, V_DT = range(8)
+# strongest that is still to come, and blocks; intervals.
+U_FIRST, U_SIZE, V_FIRST, V_SIZE, AHEAD_FIRST, AHEAD_SIZE, BLOCK_FIRST, BLOCK_SIZE, DT, V_DT = range(10)
+BLOCK = 32  # samples over which a structure at rest is taken at once if the strongest of them cannot move it
 # Columns of `runs`, one row a history; an eta that is NaN is the structure's own.
 # LOOSE tells whether its columns fall out of step at its first impact.
 STRUCTURE, RECORD, FACTOR, V_FACTOR, SIZE, ETA_POSITIVE, ETA_NEGATIVE, START, SLENDER, LOOSE = range(10)
@@ -121,16 +132,20 @@ class Deck(NamedTuple):
     # dphi/dq, powers 0 to 3 of the place in the cell. Where vertical motion meets a tie, forces are of (cells, 2, 3, 4)
     # with that of Q/(g sqrt(I)) behind: the kernel is compiled for each, and without it costs nothing more.
     forces: np.ndarray
+    smooth: (
+        np.ndarray
+    )  # (m, 2, 4 pairs): polynomials of the same two forces in y = q PER_REACH - 1: even and odd powers
     angles: np.ndarray
     certain: (
         np.ndarray
     )  # (cells, 2): largest ground acceleration, over g, that cannot stop an outward motion from there
     held: np.ndarray  # (cells, 2): the largest |Q|/(g |B|) still to come; of no rows where `forces` are of two
     corners: np.ndarray  # int (cells, 2): corners of the force up to the start of each cell; of no rows if none has any
-    records: np.ndarray  # (k, 8): see the columns above
+    records: np.ndarray  # (k, 10): see the columns above
     u: np.ndarray  # horizontal ground acceleration of all records [m/s2], straight between samples, zero after the last
     v: np.ndarray  # vertical ground acceleration
     ahead: np.ndarray  # at each sample of the horizontal component, the largest |u| from there on [m/s2]
+    blocks: np.ndarray  # the largest |u| of every BLOCK samples, and of the next one [m/s2]
     v_ahead: np.ndarray  # the largest -v from each sample of the vertical component on [m/s2]
     v_above: np.ndarray  # the largest v from there on [m/s2]
     joints: Joints
@@ -166,6 +181,19 @@ class Phase(NamedTuple):
     held: bool  # whether the ground pushes it against a stop
 
 
+class Progress(NamedTuple):
+    """How far a history has come: its motion at tau in the interval k, which begins at time t."""
+
+    phase: Phase
+    t: float
+    k: int
+    j: int  # sample of the vertical component
+    tau: float
+    loops: int  # events in the interval, or the piece of it
+    before: float  # impacts up to the end of the record
+    idle: int  # intervals since then without an impact
+
+
 class Interval(NamedTuple):
     """The time between two samples of the horizontal ground acceleration, u_g'' = u0 + ramp tau from time t."""
 
@@ -188,7 +216,7 @@ class Structure(NamedTuple):
 
     linear: bool
     numbers: np.ndarray
-    forces: np.ndarray
+    forces: ForceTables
     angles: np.ndarray
     certain: np.ndarray
     held: np.ndarray
@@ -205,17 +233,18 @@ class Motion(NamedTuple):
     v_factor: float
     v_dt: float
     ahead: np.ndarray
+    blocks: np.ndarray
     v_ahead: np.ndarray
     v_above: np.ndarray
 
 
 @inlined
-def fly(forces, corners, law, ground, t, tau, end, state, h, rtol, watched, watch, marks):
+def fly(structure, law, ground, t, tau, end, state, h, rtol, watched, watch, marks):
     """Advance a motion from tau towards end, to the first impact, the bound or the kinematic limit.
 
     Parameters
     ----------
-    forces, corners, law, ground : ndarray, ndarray, Law, Ground
+    structure, law, ground : Structure, Law, Ground
         What the motion obeys.
     t, tau, end : float
         Time of the sample, and from there the start and the end of the flight [s].
@@ -228,56 +257,49 @@ def fly(forces, corners, law, ground, t, tau, end, state, h, rtol, watched, watc
     watch : Watch
         The joints.
     marks : ndarray
-        Takes the peak and the crossing of phi_cr, and what becomes of the joints.
+        Takes the peaks and the crossing of phi_cr, and what becomes of the joints.
 
     Returns
     -------
     tuple
         What ended it, the new tau and state, and the step to try next.
     """
-    d = law.d
+    forces, corners = structure.forces, structure.corners
+    flight = set_out(law, tau, end, h, state)
+    peak, part, behind = marks[PEAK + law.d], nan, nan
     for _ in range(1_000_000):
-        left = end - tau
-        if left <= 0:
-            return REACHED, end, state, h
-        q, w, f = state
-        size = min(left, h)
-        if q == 0 and f < 0 and w > 0:  # a hop: it lands after 2 w/-f or so
-            size = min(size, -2.05 * w / f)
-        whole = size == left
-        ended, e_q, e_w = advance(forces, law, ground, tau, state, size)
-        part, behind = size, nan
-        if corners.shape[0] > 0:
-            part, behind = up_to_corner(forces, corners, law, ground, tau, state, size, ended)
-            if isfinite(behind):
-                size, whole = part, False
-                ended, e_q, e_w = advance(forces, law, ground, tau, state, size)
-        error = misses(law, rtol, state, ended, e_q, e_w)
-        if not error <= 1:
-            h = size * (max(0.2, 0.9 * error**-0.2) if isfinite(error) else 0.1)
-            if tau + h == tau:
-                return STUCK, tau, state, h
-            continue
-        if size == h and not law.exact:
-            h = size * (5.0 if error < 1e-4 else min(5.0, 0.9 * error**-0.2))
-        peak, event = marks[PEAK + d], REACHED
-        if rises(law, state, ended):
-            marks[PEAK + d] = max(marks[PEAK + d], ended.q)
-        elif not falls(state, ended):
-            event, inside, ended = inspect(forces, law, ground, t, tau, state, size, ended, marks)
-            whole = whole and inside == size
-            size = inside
-            if inside < part:
-                behind = nan
+        if flight.mode < DONE:
+            ended, e_q, e_w = advance(forces, law, ground, flight.tau, flight.state, flight.search.x)
+            if flight.mode == STEP:
+                peak, behind = marks[PEAK + law.d], nan
+                if corners.shape[0] > 0:
+                    part, behind = up_to_corner(forces, corners, law, ground, flight, ended, peak)
+                    if isfinite(behind):
+                        inside, search = Inside(part, ended, part, ended.q, 0), Search(part, 0.0, part, False, 0.0, 0)
+                        flight = Flight(STEP, flight.tau, end, flight.h, flight.state, inside, search)
+                        ended, e_q, e_w = advance(forces, law, ground, flight.tau, flight.state, part)
+            flight = judged(law, rtol, flight, ended, e_q, e_w, t, marks)
+            if flight.mode < DONE:
+                continue
+        event, (size, ended, _, _, _) = flight.mode - DONE, flight.inside
+        tau, h = flight.tau, flight.h
+        if event == STUCK or end <= tau:
+            return event, min(tau, end), flight.state, h
+        last = event != REACHED
         if watched and (watch.notes[FRESH] != 0 or not quiet(watch, law, ground, tau + size, ended.q, ended.w)):
-            look(watch, law, ground, t, tau, state, size, ended, peak, 0.0, 0.0, marks)
+            look(watch, law, ground, t, tau, flight.state, size, ended, peak, 0.0, 0.0, marks)
+            last = last or isfinite(marks[PASSED])
+        keep_rate(structure, law, ground, t, tau, flight.state, size, ended, last, marks)
+        whole = size == end - tau and not isfinite(behind)
+        tau = end if whole else min(tau + size, end)
         if event != REACHED:
-            return event, end if whole else min(tau + size, end), ended, h
-        state = State(behind, ended.w, ended.f) if isfinite(behind) else ended
-        tau = end if whole else tau + size
-        if state.q >= law.q_end:
-            return LIMIT, tau, state, h
-    return STUCK, tau, state, h
+            return event, tau, ended, h
+        if isfinite(behind) and size == part:
+            ended = State(behind, ended.w, ended.f)
+        if ended.q >= law.q_end:
+            return LIMIT, tau, ended, h
+        flight = set_out(law, tau, end, h, ended)
+    return STUCK, flight.tau, flight.state, flight.h
 
 
 @called
@@ -335,20 +357,6 @@ def lifts_at(numbers, tau, end, u, ramp, g, grade):
     return first, lifted
 
 
-@called
-def angle(structure, d, q):
-    """phi and dphi/dq at q."""
-    if structure.linear:
-        return q, 1.0
-    angles = structure.angles
-    place = q * structure.numbers[d, PER_CELL]
-    k = min(max(int(place), 0), angles.shape[0] - 1)
-    x = place - k
-    phi = angles[k, d, 0] + x * (angles[k, d, 1] + x * (angles[k, d, 2] + x * angles[k, d, 3]))
-    slope = angles[k, d, 4] + x * (angles[k, d, 5] + x * (angles[k, d, 6] + x * angles[k, d, 7]))
-    return phi, slope
-
-
 @inlined
 def stays(numbers, u):
     """Whether a ground acceleration lifts a structure at rest in neither direction."""
@@ -375,21 +383,7 @@ def draw(structure, law, ground, t, flight, rtol, dt, drawn, watch, samples):
     nothing[:] = 0.0
     s = 1.0 - 2.0 * law.d
     while drawn < samples.phi.size and drawn * dt <= t + end:
-        _, tau, state, h = fly(
-            structure.forces,
-            structure.corners,
-            law,
-            ground,
-            t,
-            tau,
-            drawn * dt - t,
-            state,
-            h,
-            rtol,
-            False,
-            watch,
-            nothing,
-        )
+        _, tau, state, h = fly(structure, law, ground, t, tau, drawn * dt - t, state, h, rtol, False, watch, nothing)
         phi, speed = angle(structure, law.d, state.q)
         samples.phi[drawn], samples.rate[drawn] = s * phi, s * state.w * speed
         drawn += 1
@@ -400,7 +394,7 @@ def draw(structure, law, ground, t, flight, rtol, dt, drawn, watch, samples):
 def cleared(watch, samples, marks):
     """Make memory ready for one history."""
     marks[:] = nan
-    marks[PEAK : PEAK + 2] = 0.0
+    marks[PEAK : PEAK + 2] = marks[RATE_PEAK : RATE_PEAK + 2] = 0.0
     marks[IMPACTS] = 0.0
     marks[ENDED] = 0.0
     marks[LARGEST] = marks[LONGEST] = 0.0
@@ -426,23 +420,33 @@ def unknown_from(watch, d, t, q, reason, marks):
 
 
 @inlined
+def calms(numbers, watch, unit, u):
+    """Whether a ground acceleration neither lifts a structure at rest nor moves its joints."""
+    return stays(numbers, u) and steady(watch, u / unit)
+
+
+@inlined
 def wait_for_uplift(numbers, motion, unit, k, drawn, watch, samples):
     """Go on to the last sample before the ground lifts a structure at rest, or moves its joints.
 
     Returns this sample, and how many samples of the output are done.
     """
     u, factor, every = motion.u, motion.factor, samples.every
-    while (
-        k < u.size - 1
-        and stays(numbers, u[k] * factor)
-        and stays(numbers, u[k + 1] * factor)
-        and steady(watch, u[k] * factor / unit)
-        and steady(watch, u[k + 1] * factor / unit)
-    ):
-        if k < every * samples.phi.size and k % every == 0:
-            samples.phi[k // every] = samples.rate[k // every] = 0.0
-            drawn = k // every + 1
-        k += 1
+    while k < u.size - 1:
+        block, passed_over = k // BLOCK, 1
+        if k % BLOCK == 0 and block < motion.blocks.size:
+            strongest = motion.blocks[block] * factor
+            if calms(numbers, watch, unit, strongest) and calms(numbers, watch, unit, -strongest):
+                passed_over = min(BLOCK, u.size - 1 - k)
+        if passed_over == 1 and not (
+            calms(numbers, watch, unit, u[k] * factor) and calms(numbers, watch, unit, u[k + 1] * factor)
+        ):
+            break
+        for sample in range(k, min(k + passed_over, every * samples.phi.size)):
+            if sample % every == 0:
+                samples.phi[sample // every] = samples.rate[sample // every] = 0.0
+                drawn = sample // every + 1
+        k += passed_over
     return k, drawn
 
 
@@ -469,6 +473,7 @@ def in_one_step(structure, phase, interval, rtol, watch, marks):
     uneventful = uneventful and not passes(structure.corners, law, state.q, ended.q)
     if uneventful and watch.size > 0:  # else the step is made again, and its joints are looked at
         uneventful = watch.notes[FRESH] == 0 and quiet(watch, law, ground, span, ended.q, ended.w)
+    uneventful = uneventful and not may_have_peak(structure.numbers, law.d, state, span, ended, False, marks)
     if uneventful and misses(law, rtol, state, ended, e_q, e_w) <= 1:
         marks[PEAK + law.d] = max(marks[PEAK + law.d], ended.q)
         return True, ended
@@ -498,7 +503,10 @@ def piece_of(structure, motion, phase, interval, tau, j, watch, marks):
         if gone > tau:
             end = gone
         else:
-            unknown_from(watch, phase.law.d, t + tau, phase.state.q, WEIGHTLESS, marks)
+            d, (q, w, _) = phase.law.d, phase.state
+            _, speed = angle(structure, d, q)
+            marks[RATE_PEAK + d] = max(marks[RATE_PEAK + d], abs(w) * speed)
+            unknown_from(watch, d, t + tau, q, WEIGHTLESS, marks)
     return j, True, VerticalPiece(g, grade, end)
 
 
@@ -578,31 +586,55 @@ def meet(structure, phase, t, loops, watch, marks):
 
 
 @inlined
-def land(structure, phase, interval, piece, tau, loose, loops, watch, samples, marks):
-    """Go on after an impact, in the other direction or by a rebound, or come to rest."""
+def rebound(numbers, law, w, interval, piece, tau, loops):
+    """The direction and the rate after an impact with the rate w, and whether a structure comes to rest by it."""
+    d = law.d
+    side = d if numbers[d, ONE_SIDED] else 1 - d  # a rebound keeps its direction
+    w = numbers[d, ETA] * -w * numbers[d, RATE] / numbers[side, RATE]  # Eq. 6, on phi.
+    _, lifted = lifts_at(numbers, tau, tau, interval.u0, interval.ramp, piece.g, piece.grade)
+    return side, w, w <= numbers[side, REST] * (FAINT if lifted >= 0 else 1.0) or (lifted < 0 and loops > CHATTER)
+
+
+@inlined
+def land(structure, phase, interval, piece, tau, loose, loops, loud, watch, samples, marks):
+    """Go on after an impact, in the other direction or by a rebound, or come to rest.
+
+    `loud` tells whether it may open a joint.
+    """
     numbers, law, (q, w, f) = structure.numbers, phase.law, phase.state
-    d, t = law.d, interval.t + tau
+    d, t, rate = law.d, interval.t + tau, 0.0
     watch.notes[SO_FAR], watch.notes[SO_FAR + 1] = marks[PEAK], marks[PEAK + 1]
     marks[IMPACTS] += 1.0
     if loose and not isfinite(marks[PASSED]):
         passed(watch, d, t, q, APART, -1, marks)
-    side = d if numbers[d, ONE_SIDED] else 1 - d  # a rebound keeps its direction
-    _, speed = angle(structure, d, q)
-    rate = abs(w) * speed
-    if watch.size > 0:
-        strike(watch, side, t, q / law.q_end, watch.struck, rate, numbers[d, ETA], marks)
+    side, after, resting = rebound(numbers, law, w, interval, piece, tau, loops)
     n = int(marks[IMPACTS]) - 1
+    if loud or n < samples.impacts.shape[0]:
+        _, speed = angle(structure, d, q)
+        rate = abs(w) * speed
+    if loud:
+        strike(watch, side, t, q / law.q_end, watch.struck, rate, numbers[d, ETA], marks)
+    else:
+        watch.notes[SEEN] = nan
     if n < samples.impacts.shape[0]:
         samples.impacts[n, 0], samples.impacts[n, 1], samples.impacts[n, 2] = t, 1.0 - 2.0 * d, rate
-    w = numbers[d, ETA] * -w * numbers[d, RATE] / numbers[side, RATE]  # Eq. 6, on phi.
-    _, lifted = lifts_at(numbers, tau, tau, interval.u0, interval.ramp, piece.g, piece.grade)
-    resting = w <= numbers[side, REST] * (FAINT if lifted >= 0 else 1.0) or (lifted < 0 and loops > CHATTER)
     if resting:
-        w = 0.0
+        after = 0.0
         marks[ENDED] = t
         if watch.size > 0:
             settle(watch, t, marks)
-    return Phase(law_of(law.exact, numbers, side), State(0.0, w, f), phase.h, False, resting, False)
+    return Phase(law_of(law.exact, numbers, side), State(0.0, after, f), phase.h, False, resting, False)
+
+
+@called
+def is_calm(watch, numbers):
+    """Whether an impact presses all joints together, so that none opens or slides by it, however fast it is."""
+    for d in range(2):
+        side = d if numbers[d, ONE_SIDED] else 1 - d
+        for j in range(watch.size):
+            if bears(watch, j, side, numbers[d, ETA]) < 0:
+                return False
+    return True
 
 
 @inlined
@@ -620,35 +652,76 @@ def is_lost(structure, motion, phase, k):
 
 
 @called
-def follow(structure, motion, start, loose, rtol, most_impacts, brief, watch, samples, marks):
+def started(structure, motion, start, watch, samples, marks):
+    """The start of a motion at rest, with q = `start`. Returns how it ends (`ROCKING` if it goes on), and its start."""
+    cleared(watch, samples, marks)
+    numbers = structure.numbers
+    exact = structure.linear and motion.v.size == 0
+    law = law_of(exact, numbers, 1 if start < 0 else 0)
+    q = abs(start)
+    h = STRIDE / max(numbers[0, P], numbers[1, P]) if exact else motion.dt
+    phase = Phase(law, State(q, 0.0, 0.0), h, False, q == 0, False)
+    marks[PEAK + law.d] = q
+    how = ROCKING
+    if q >= law.q_bound:
+        marks[SIDE] = law.d
+        unknown_from(watch, law.d, 0.0, q, BOUND, marks)
+        how = LEFT
+    return how, Progress(phase, 0.0, 0, 0, 0.0, 0, 0.0, 0)
+
+
+@inlined
+def span_of(shaken, dt, numbers):
+    """The length of an interval, in the record or after it."""
+    return dt if shaken else SLOW / max(numbers[0, P], numbers[1, P])
+
+
+@inlined
+def after_interval(lost, dt, phase, interval, shaken, k, before, idle, most_impacts, brief, marks):
+    """The end of the interval before sample k: how the motion ends (`ROCKING` if it goes on), and the next one."""
+    t = interval.t + interval.span
+    if shaken:
+        t, before = k * dt, marks[IMPACTS]
+    else:
+        idle += 1
+    how = ROCKING
+    if lost:
+        how = ends(marks, t, phase.law.d, OVERTURNED)
+    elif brief and phase.state.q < phase.law.q_cr and isfinite(marks[PASSED]):
+        how = ends(marks, t, phase.law.d, LEFT)
+    elif marks[IMPACTS] - before > most_impacts or idle > IDLE:
+        how = ends(marks, t, phase.law.d, STILL_ROCKING)
+    return how, t, before, idle
+
+
+@inlined
+def fits_a_lane(phase, watch):
+    """Whether a motion may go on in a lane: it rocks where its forces are polynomials, and no joint moves."""
+    law, q = phase.law, phase.state.q
+    free = not (phase.resting or phase.held) and law.pairs > 0 and q * law.per_reach - 1 <= 1
+    return free and (watch.size == 0 or (watch.notes[MOVING] == 0 and watch.notes[FRESH] == 0))
+
+
+@called
+def follow(structure, motion, progress, loose, rtol, most_impacts, brief, for_lane, watch, samples, marks):
     """Follow one motion to its end: at rest, overturned, or still rocking after `most_impacts` impacts.
 
-    It begins at rest, with q = `start`. If `loose`, nothing is known from its first impact on. Returns how it ended.
+    If `loose`, nothing is known from its first impact on. If `for_lane`, it is left, as `ROCKING`, at the next sample
+    at which it may go on in a lane. Returns how it ended, and how far it has come.
     """
-    numbers, forces, corners = structure.numbers, structure.forces, structure.corners
-    u, factor, dt = motion.u, motion.factor, motion.dt
-    every, phi_out, rate_out, _, _ = samples
-    cleared(watch, samples, marks)
+    numbers = structure.numbers
+    dt, every, phi_out, rate_out = motion.dt, samples.every, samples.phi, samples.rate
     exact = structure.linear and motion.v.size == 0
     # The structure's own accelerations are those of the size of its joints times this.
     unit = numbers[0, GRAVITY] / watch.gravity
-    fastest = max(numbers[0, P], numbers[1, P])
-    last, v_last = u.size - 1, motion.v.size - 1
-    law = law_of(exact, numbers, 1 if start < 0 else 0)
-    at_start = State(abs(start), 0.0, 0.0)
-    phase = Phase(law, at_start, STRIDE / fastest if exact else dt, False, at_start.q == 0, False)
-    marks[PEAK + law.d] = at_start.q
-    if at_start.q >= law.q_bound:
-        marks[SIDE] = law.d
-        unknown_from(watch, law.d, 0.0, at_start.q, BOUND, marks)
-        return LEFT
-    t, k, j = 0.0, 0, 0
-    shaken = True  # whether the record goes on
+    calm = is_calm(watch, numbers)
+    last, v_last = motion.u.size - 1, motion.v.size - 1
+    phase, t, k, j, tau, loops, before, idle = progress
     drawn = 0  # samples of the output that are done
-    before = 0.0  # impacts up to the end of the record
-    idle = 0  # intervals since then without an impact
+    shaken = True  # whether the record goes on
     while True:
-        if phase.resting and motion.v.size == 0:
+        begins = tau == 0 and loops == 0
+        if begins and phase.resting and motion.v.size == 0:
             k, drawn = wait_for_uplift(numbers, motion, unit, k, drawn, watch, samples)
             t = k * dt
         if shaken and k < every * phi_out.size and k % every == 0:  # t is the time of sample k
@@ -658,27 +731,25 @@ def follow(structure, motion, start, loose, rtol, most_impacts, brief, watch, sa
             phi_out[drawn], rate_out[drawn] = s * phi, s * phase.state.w * speed
             drawn += 1
         shaken = k < last or j < v_last
-        if phase.resting and not shaken:
+        span = span_of(shaken, dt, numbers)
+        u0, u1 = (motion.u[k] * motion.factor, motion.u[k + 1] * motion.factor) if k < last else (0.0, 0.0)
+        interval = Interval(t, span, u0, (u1 - u0) / span)
+        if begins and phase.resting and not shaken:
             slide_to_rest(watch, t, unit, marks)
             phi_out[drawn:] = rate_out[drawn:] = 0.0
             marks[SIDE] = phase.law.d
-            return AT_REST
-        span = dt if shaken else SLOW / fastest
-        u0, u1 = (u[k] * factor, u[k + 1] * factor) if k < last else (0.0, 0.0)
-        interval = Interval(t, span, u0, (u1 - u0) / span)
-        if k >= last:
+            return AT_REST, progress
+        if begins and k >= last:
             phase = Phase(phase.law, phase.state, phase.h, False, phase.resting, phase.held)
-        elif exact and phase.known:
+        elif begins and exact and phase.known:
             f = balance(phase.law, phase.state.q, (1.0 - 2.0 * phase.law.d) * u0)
             phase = Phase(phase.law, State(phase.state.q, phase.state.w, f), phase.h, True, phase.resting, phase.held)
-        tau = 0.0
-        if phase.known and not phase.resting and motion.v.size == 0 and phase.h >= span:
+        if begins and phase.known and not phase.resting and motion.v.size == 0 and phase.h >= span:
             whole, state = in_one_step(structure, phase, interval, rtol, watch, marks)
             phase = Phase(phase.law, state, phase.h, True, False, phase.held)
             tau = span if whole else 0.0
         piece = VerticalPiece(numbers[0, GRAVITY], 0.0, span)
         while tau < span:
-            loops = 0
             if motion.v.size > 0:
                 j, goes_on, piece = piece_of(structure, motion, phase, interval, tau, j, watch, marks)
                 known = phase.known and goes_on
@@ -686,7 +757,7 @@ def follow(structure, motion, start, loose, rtol, most_impacts, brief, watch, sa
             while tau < piece.end:
                 loops += 1
                 if loops > LOOPS:
-                    return ends(marks, t + tau, phase.law.d, STALLED)
+                    return ends(marks, t + tau, phase.law.d, STALLED), progress
                 if phase.resting:
                     tau, lifted = rest(structure, motion, interval, piece, tau, unit, watch, marks)
                     if lifted < 0:
@@ -709,7 +780,7 @@ def follow(structure, motion, start, loose, rtol, most_impacts, brief, watch, sa
                 state = phase.state if phase.known else balanced(structure, phase, interval, ground, tau, watch)
                 began, flown = tau, phase.h
                 event, tau, ended, h = fly(
-                    forces, corners, phase.law, ground, t, began, piece.end, state, flown, rtol,
+                    structure, phase.law, ground, t, began, piece.end, state, flown, rtol,
                     watch.size > 0, watch, marks,
                 )  # fmt: skip
                 phase = Phase(phase.law, ended, h, True, False, phase.held)
@@ -717,27 +788,25 @@ def follow(structure, motion, start, loose, rtol, most_impacts, brief, watch, sa
                     flight = (began, tau, state, flown)
                     drawn = draw(structure, phase.law, ground, t, flight, rtol, every * dt, drawn, watch, samples)
                 if event == STUCK:
-                    return ends(marks, t + tau, phase.law.d, STALLED)
+                    return ends(marks, t + tau, phase.law.d, STALLED), progress
                 if event == LIMIT:
                     how, phase = meet(structure, phase, t + tau, loops, watch, marks)
                     if how != ROCKING:
-                        return how
+                        return how, progress
                 if event == IMPACT:
                     idle = 0
-                    phase = land(structure, phase, interval, piece, tau, loose, loops, watch, samples, marks)
-        t += span
+                    loud = watch.size > 0 and not (calm and watch.notes[MOVING] == 0)
+                    phase = land(structure, phase, interval, piece, tau, loose, loops, loud, watch, samples, marks)
+            loops = 0
         k += 1
-        if shaken:
-            t = k * dt
-            before = marks[IMPACTS]
-        else:
-            idle += 1
-        if is_lost(structure, motion, phase, k):
-            return ends(marks, t, phase.law.d, OVERTURNED)
-        if brief and phase.state.q < phase.law.q_cr and isfinite(marks[PASSED]):
-            return ends(marks, t, phase.law.d, LEFT)
-        if marks[IMPACTS] - before > most_impacts or idle > IDLE:
-            return ends(marks, t, phase.law.d, STILL_ROCKING)
+        lost = is_lost(structure, motion, phase, k)
+        how, t, before, idle = after_interval(
+            lost, dt, phase, interval, shaken, k, before, idle, most_impacts, brief, marks
+        )
+        tau, loops = 0.0, 0
+        progress = Progress(phase, t, k, j, 0.0, 0, before, idle)
+        if how != ROCKING or (for_lane and fits_a_lane(phase, watch)):
+            return how, progress
 
 
 @called
@@ -773,6 +842,63 @@ def bound_of(structure, d, slender):
     return high if high < end else inf
 
 
+@inlined
+def structure_of(deck, what, numbers):
+    """The structure of a history, whose numbers are in `numbers`."""
+    m = int(what[STRUCTURE])
+    cells = slice(deck.structures[m, 0], deck.structures[m, 0] + deck.structures[m, 1])
+    return Structure(
+        deck.structures[m, 2] == 1,
+        numbers,
+        ForceTables(deck.forces[cells], deck.smooth[m]),
+        deck.angles[cells],
+        deck.certain[cells],
+        deck.held[cells] if deck.held.shape[0] > 0 else deck.held,
+        deck.corners[cells] if deck.corners.shape[0] > 0 else deck.corners,
+    )
+
+
+@inlined
+def motion_of(deck, what):
+    """The ground motion of a history, divided by the size of its structure."""
+    of, size = deck.records[int(what[RECORD])], what[SIZE]
+    horizontal = slice(int(of[U_FIRST]), int(of[U_FIRST]) + int(of[U_SIZE]))
+    vertical = slice(int(of[V_FIRST]), int(of[V_FIRST]) + int(of[V_SIZE]))
+    later = slice(int(of[AHEAD_FIRST]), int(of[AHEAD_FIRST]) + int(of[AHEAD_SIZE]))
+    v_later = later if of[V_SIZE] > 0 else slice(0, 0)
+    return Motion(
+        deck.u[horizontal],
+        what[FACTOR] / size,
+        of[DT],
+        deck.v[vertical],
+        what[V_FACTOR] / size,
+        of[V_DT],
+        deck.ahead[later],
+        deck.blocks[int(of[BLOCK_FIRST]) : int(of[BLOCK_FIRST]) + int(of[BLOCK_SIZE])],
+        deck.v_ahead[v_later],
+        deck.v_above[v_later],
+    )
+
+
+@called
+def ready(deck, what, numbers):
+    """Fill in the numbers of a history, with its bounds."""
+    numbers_of(deck.numbers[int(what[STRUCTURE])], what, numbers)
+    structure = structure_of(deck, what, numbers)
+    for d in range(2):
+        numbers[d, Q_BOUND] = bound_of(structure, d, what[SLENDER])
+
+
+@inlined
+def close(structure, how, marks):
+    """Note how a history ended, and its peaks as rotations."""
+    marks[STATUS] = how
+    for d in range(2):
+        for peak in (PEAK, PASSED_PEAK, WARNED_PEAK):
+            if isfinite(marks[peak + d]):
+                marks[peak + d], _ = angle(structure, d, marks[peak + d])
+
+
 @called
 def run(first, stop, runs, deck, rtol, most_impacts, brief, samples, all_marks, room):
     """Follow the histories first to stop of `runs`, one after the other.
@@ -797,44 +923,17 @@ def run(first, stop, runs, deck, rtol, most_impacts, brief, samples, all_marks, 
         Takes the samples and impacts of the last history.
     all_marks : ndarray, shape (n, MARKS)
         For each history peaks of both directions [rad], last upward crossing of phi_cr, first uplift, number of
-        impacts, end time, index of the direction it ended in, and how it ended; to be filled.
+        impacts, end time, index of the direction it ended in, how it ended, and peak rates [rad/s]; to be filled.
     room : Room
         Memory of this call.
     """
     for i in range(first, stop):
-        what = runs[i]
-        m, r = int(what[STRUCTURE]), int(what[RECORD])
-        numbers_of(deck.numbers[m], what, room.numbers)
-        cells = slice(deck.structures[m, 0], deck.structures[m, 0] + deck.structures[m, 1])
-        linear = deck.structures[m, 2] == 1
-        held = deck.held[cells] if deck.held.shape[0] > 0 else deck.held
-        corners = deck.corners[cells] if deck.corners.shape[0] > 0 else deck.corners
-        structure = Structure(
-            linear, room.numbers, deck.forces[cells], deck.angles[cells], deck.certain[cells], held, corners
-        )
-        for d in range(2):
-            room.numbers[d, Q_BOUND] = bound_of(structure, d, what[SLENDER])
-        of, size = deck.records[r], what[SIZE]
-        horizontal = slice(int(of[U_FIRST]), int(of[U_FIRST]) + int(of[U_SIZE]))
-        vertical = slice(int(of[V_FIRST]), int(of[V_FIRST]) + int(of[V_SIZE]))
-        later = slice(int(of[AHEAD_FIRST]), int(of[AHEAD_FIRST]) + int(of[AHEAD_SIZE]))
-        v_later = later if of[V_SIZE] > 0 else slice(0, 0)
-        motion = Motion(
-            deck.u[horizontal],
-            what[FACTOR] / size,
-            of[DT],
-            deck.v[vertical],
-            what[V_FACTOR] / size,
-            of[V_DT],
-            deck.ahead[later],
-            deck.v_ahead[v_later],
-            deck.v_above[v_later],
-        )
-        marks = all_marks[i]
-        watch = watch_of(deck.joints, m, size, what[SLENDER], motion, room)
-        loose = what[LOOSE] != 0
-        marks[STATUS] = follow(structure, motion, what[START], loose, rtol, most_impacts, brief, watch, samples, marks)
-        for d in range(2):
-            for peak in (PEAK, PASSED_PEAK, WARNED_PEAK):
-                if isfinite(marks[peak + d]):
-                    marks[peak + d], _ = angle(structure, d, marks[peak + d])
+        what, marks = runs[i], all_marks[i]
+        ready(deck, what, room.numbers)
+        structure, motion = structure_of(deck, what, room.numbers), motion_of(deck, what)
+        watch = watch_of(deck.joints, int(what[STRUCTURE]), what[SIZE], what[SLENDER], motion, room)
+        how, progress = started(structure, motion, what[START], watch, samples, marks)
+        if how == ROCKING:
+            loose = what[LOOSE] != 0
+            how, _ = follow(structure, motion, progress, loose, rtol, most_impacts, brief, False, watch, samples, marks)
+        close(structure, how, marks)

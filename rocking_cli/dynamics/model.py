@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import isnan, nan, sqrt
+from math import inf, isnan, nan, sqrt
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -19,14 +19,19 @@ from rocking_cli.dynamics.joints import JointTables, joints_of
 from rocking_cli.dynamics.sliding import Sliding, sliding_of
 from rocking_cli.dynamics.stepping import (  # fmt: skip
     BOUND_ETA,
+    BOUNDED,
+    BOW,
     COLUMNS,
     ETA,
+    FASTEST,
     GRAVITY,
     HELD,
     KAPPA_G,
     LAMBDA,
     ONE_SIDED,
+    PAIRS,
     PER_CELL,
+    PER_REACH,
     Q_BOUND,
     Q_CR,
     Q_END,
@@ -34,7 +39,7 @@ from rocking_cli.dynamics.stepping import (  # fmt: skip
     REST,
     P,
 )
-from rocking_cli.dynamics.tables import DirectionTable, tabulate
+from rocking_cli.dynamics.tables import MOST_PAIRS, DirectionTable, polynomials, tabulate
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.names import OPENING
 from rocking_cli.short_repr import short_repr
@@ -46,6 +51,7 @@ FALLEN_ROTATION = 1e6  # rad: no realistic acceleration turns a linear block bac
 EQUAL_TABLES = 1e-9  # difference of the tables of two directions by rounding, over the largest value
 KINEMATIC_SPREAD, MEASURED_SPREAD = 0.05, 0.03  # standard deviation of a restitution from the shape, and of a given one
 SLENDERNESS_SPREAD = 0.10  # standard deviation of ln slenderness
+REACH = 1.3  # q up to which forces are polynomials, over q_cr: motions beyond nearly always overturn
 REST_RATE = 1e-6  # post-impact rate over p phi_cr below which a structure is at rest: it would rock to 5e-13 phi_cr
 
 
@@ -98,6 +104,8 @@ class Model:
         Whether its restitution is not known, so that its motion is unknown from the first impact on.
     sliding : Sliding, optional
         The foot of a single body that may only slide; None for other structures, and for a linear model.
+    smooth : ndarray
+        See `rocking_cli.dynamics.kernels.Deck`; zeros where the forces are no such polynomials.
     """
 
     name: ModelName
@@ -120,6 +128,7 @@ class Model:
     bounds: tuple[Bound | None, Bound | None] = (None, None)
     to_first_impact: bool = False
     sliding: Sliding | None = None
+    smooth: Reals = field(default_factory=lambda: np.zeros((2, 4 * MOST_PAIRS)))
 
     @property
     def p(self) -> float:
@@ -341,6 +350,7 @@ def nonlinear_model(mechanism: Mechanism, statics: tuple[Statics, Statics], etas
         rest = mechanism.coefficients(np.zeros(1), direction)
         row[HELD] = rest.Q[0] / (mechanism.gravity * rest.B[0])  # part of lambda that does not scale with g
         row[Q_BOUND], row[BOUND_ETA] = np.inf, np.nan
+        row[FASTEST], row[BOW], row[BOUNDED] = _rate_bounds(table, row[Q_CR])
         numbers.append(row)
     forces, angles, certain = (
         np.stack([getattr(table, part) for table in tables], axis=1) for part in ("forces", "angles", "certain")
@@ -350,13 +360,31 @@ def nonlinear_model(mechanism: Mechanism, statics: tuple[Statics, Statics], etas
         none = np.zeros((len(forces), 5))
         held = np.stack([table.held if table.held.size else none for table in tables], axis=1)
     corners = np.stack([table.corners for table in tables], axis=1)
+    smooth = np.zeros((2, 4 * MOST_PAIRS))
+    if not (corners.any() or held.size):
+        for d, (direction, table) in enumerate(zip(mechanism.sides, tables, strict=True)):
+            reach = min(REACH * numbers[d][Q_CR], table.end)
+            numbers[d][PAIRS], smooth[d] = polynomials(mechanism, direction, table, reach)
+            numbers[d][PER_REACH] = 2 / reach
     phi_cr = statics[0].reference, statics[1].reference
     ends = statics[0].phi_cr is None, statics[1].phi_cr is None
     return Model(
         "nonlinear", label, phi_cr, np.array(numbers), forces, angles, certain, tables=tables, held=held,
-        corners=corners if corners.any() else corners[:0], ends_at_limit=ends,
+        corners=corners if corners.any() else corners[:0], ends_at_limit=ends, smooth=smooth,
         joints=joints_of(mechanism, statics, tables, max(row[P] for row in numbers)),
     )  # fmt: skip
+
+
+def _rate_bounds(table: DirectionTable, q_cr: float) -> tuple[float, float, float]:
+    """Return the largest dphi/dq, the largest |d2phi/dq2| over it, and the q up to which they are that.
+
+    Near a limit they may be far larger than up to phi_cr, where motions are.
+    """
+    slope = table.angles[:, 4]
+    constant = float(np.ptp(slope)) <= EQUAL_TABLES * float(slope[0])
+    cells = slice(None if constant else int(q_cr / table.cell) + 2)
+    bend = np.abs(table.angles[cells, 5] / slope[cells]).max() / table.cell
+    return float(slope[cells].max()), float(bend), inf if constant else q_cr
 
 
 def _rate(mechanism: Mechanism, direction: Direction, statics: Statics) -> float:
@@ -405,6 +433,7 @@ def linear_model(label: str, name: ModelName, blocks: tuple[EquivalentBlock, Equ
         row[LAMBDA], row[Q_CR], row[ETA], row[RATE] = block.phi_cr / kappa, block.phi_cr, block.eta, 1.0
         row[REST], row[Q_END], row[PER_CELL] = REST_RATE * block.p * block.phi_cr, FALLEN_ROTATION, 1.0
         row[P], row[KAPPA_G], row[GRAVITY] = block.p, kappa / gravity, gravity
+        row[FASTEST], row[BOW], row[BOUNDED] = 1.0, 0.0, inf
         row[Q_BOUND], row[BOUND_ETA] = np.inf, np.nan
         numbers.append(row)
         stiffness = block.p**2 / gravity

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from rocking_cli.dynamics.stepping import IMPACTS, PEAK, called, inlined
+from rocking_cli.dynamics.stepping import IMPACTS, PEAK, called, inlined, quintic
 
 # What `marks` gathers of the joints: when their opening passes its limit, why and where, with peaks and impacts until
 # then; the first moment at which one does not bear, where, with the peaks until then; the largest opening [m], where
@@ -97,17 +97,9 @@ def cubic(at, first, x):
 @inlined
 def between(state, ended, size, x):
     """q and w inside a step, by the polynomial of order 5 through both of its ends."""
-    q, w, f = state
-    q1, w1, f1 = ended
-    v, v1, a, a1 = w * size, w1 * size, f * size * size, f1 * size * size
-    rise = q1 - q - v - a / 2
-    steer = v1 - v - a
-    bend = a1 - a
-    c3 = 10 * rise - 4 * steer + bend / 2
-    c4 = -15 * rise + 7 * steer - bend
-    c5 = 6 * rise - 3 * steer + bend / 2
-    height = q + x * (v + x * (a / 2 + x * (c3 + x * (c4 + x * c5))))
-    speed = v + x * (a + x * (3 * c3 + x * (4 * c4 + x * 5 * c5)))
+    c1, c2, c3, c4, c5 = quintic(state, ended, size)
+    height = state.q + x * (c1 + x * (c2 + x * (c3 + x * (c4 + x * c5))))
+    speed = c1 + x * (2 * c2 + x * (3 * c3 + x * (4 * c4 + x * 5 * c5)))
     return max(height, 0.0), speed / size
 
 
@@ -325,6 +317,28 @@ def look(watch, law, ground, t, tau, state, size, ended, peak, held, held_end, m
         notes[MOVING] = 1.0 if moving else 0.0
         note(watch, d, q_cr, t + tau + size * x, q, Demand(most, where, crushes, parted), moving, marks)
         notes[SO_FAR + d] = max(notes[SO_FAR + d], q)
+
+
+@inlined
+def bears(watch, j, d, eta):
+    """The least by which an impact presses the ends of a joint, or friction exceeds its shear, over the rate before.
+
+    d is the direction that begins.
+    """
+    row, shear = d * watch.lines, watch.contacts[j, d, SHEAR]
+    least, total = 0.0, 0.0
+    if shear < 0:
+        return least
+    for end in range(2):
+        r = watch.contacts[j, d, NORMAL + end]
+        if r >= 0:
+            p = watch.struck[row + r, 0] + eta * watch.struck[row + r, 1]
+            total, least = total + p, min(least, p)
+    friction = watch.bearing[j, FRICTION]
+    if isfinite(friction):
+        p = watch.struck[row + shear, 0] + eta * watch.struck[row + shear, 1]
+        least = min(least, friction * max(total, 0.0) - abs(p))
+    return least
 
 
 @called

@@ -38,6 +38,9 @@ class Outcome(Generic[Flags, Counts, Numbers]):
         Largest rotation in either direction [rad], >= 0; NaN in the direction of overturning.
     peak_ratio : float
         Largest rotation over the critical rotation; 0 without uplift, NaN after overturning.
+    peak_rate_positive, peak_rate_negative : float
+        Largest angular velocity while it rocks in either direction, outward or back [rad/s], >= 0; NaN in the direction
+        of overturning.
     overturning_time : float
         Time at which the rotation passed the critical one for good [s]; NaN if it did not, or if not computed.
     uplift_time : float
@@ -78,6 +81,8 @@ class Outcome(Generic[Flags, Counts, Numbers]):
     peak_positive: Numbers
     peak_negative: Numbers
     peak_ratio: Numbers
+    peak_rate_positive: Numbers
+    peak_rate_negative: Numbers
     overturning_time: Numbers
     uplift_time: Numbers
     impact_count: Counts
@@ -90,6 +95,12 @@ class Outcome(Generic[Flags, Counts, Numbers]):
     by_blocks: Flags
     slip: Numbers
     off_edge: Flags
+
+    @property
+    def peak_rate(self) -> Numbers:
+        """Largest angular velocity in both directions [rad/s]; 0 without uplift, NaN after overturning."""
+        one, other = self.peak_rate_positive, self.peak_rate_negative
+        return one * (one >= other) + other * (other > one)  # type: ignore[operator,no-any-return]
 
     @property
     def fell(self) -> Flags:
@@ -180,3 +191,5 @@ Outcomes: TypeAlias = "Outcome[NDArray[np.bool_], NDArray[np.int64], NDArray[np.
 """Outcomes of many motions, as arrays."""
 
 OUTCOME_FIELDS = tuple(field.name for field in fields(Outcome))
+ROTATIONS = ("peak_positive", "peak_negative", "peak_rate_positive", "peak_rate_negative")
+"""The fields that grow with the slenderness of a structure."""

@@ -23,14 +23,14 @@ from typing import NamedTuple
 DECIDED, OVERTURNED, SPENT = range(3)
 # How a flight ends: at the end of its segment, at an impact, or where nothing can bring it back.
 REACHED, IMPACT, FALLEN = range(3)
-# What a search inside a flight is for: x at a level, x' = 0, or x'' = x'.
-HEIGHT, TURN, BALANCE = range(3)
+# What a search inside a flight is for: x at a level, x' = 0, x'' = x', x'' = 0 or x''' = 0.
+HEIGHT, TURN, BALANCE, SPEED, PULL = range(5)
 
 FAINT = 1e-10  # x' after an impact within the pulse below which it is at rest: it would rock to 5e-21 of phi_cr
 STILL = 1e-6  # x' after an impact below which it is at rest after the pulse
 EXCURSIONS = 20_000  # within the pulse; to come to rest a restitution of 0.99 needs 2300
 SLIVER = 1e-12  # rest of a segment, or of a radian, that is too short to lift a structure
-RESULTS = 6  # numbers of one of many pulses, see `many`
+RESULTS = 8  # numbers of one of many pulses, see `many`
 COLUMNS = 4  # of the log, an impact: time [s], sign of the direction that ends, phi. before [rad/s], peak of x before
 
 Rows = Sequence[Sequence[float]]
@@ -45,7 +45,7 @@ class Side(NamedTuple):
     eta: float  # of an impact that ends this direction
 
 
-class Flight(NamedTuple):
+class PulseFlight(NamedTuple):
     """A motion within one segment, from tau = 0 there."""
 
     x: float
@@ -64,10 +64,11 @@ class Fate(NamedTuple):
     impacts: int  # up to the end of the pulse or overturning; more if they are logged
     uplift: float  # time of the first [s], NaN if there is none
     peaks: tuple[float, float]  # largest x in the positive and the negative direction
+    rates: tuple[float, float]  # largest |x'| there
     crossed: float  # when phi_cr was passed for good [s], if it overturned and this was requested
 
 
-def at(flight: Flight, h: float) -> tuple[float, float, float, float]:
+def at(flight: PulseFlight, h: float) -> tuple[float, float, float, float]:
     """x, x', x'' and the growth of the push c sin(.), a time h after the start of a flight.
 
     The differences from the start are written such that none cancels for small h.
@@ -86,16 +87,21 @@ def at(flight: Flight, h: float) -> tuple[float, float, float, float]:
     )
 
 
-def root(flight: Flight, sought: int, level: float, low: float, high: float, guess: float, falling: bool) -> float:
-    """When x reaches level, x' vanishes or x'' = x': Newton, kept between low and high.
+def root(flight: PulseFlight, sought: int, level: float, low: float, high: float, guess: float, falling: bool) -> float:
+    """When x reaches level, or what else is sought vanishes: Newton, kept between low and high.
 
     What is sought is positive at low and not at high if it is falling, else the other way round.
     """
     h = guess if low < guess < high else (low + high) / 2
     for _ in range(200):
         x, v, force, growth = at(flight, h)
-        value = force - v if sought == BALANCE else v if sought == TURN else x - level
-        slope = growth - value if sought == BALANCE else force if sought == TURN else v
+        if sought == SPEED:
+            value, slope = force, v + growth
+        elif sought == PULL:
+            value, slope = v + growth, force - flight.W * flight.W * (force - x + 1)
+        else:
+            value = force - v if sought == BALANCE else v if sought == TURN else x - level
+            slope = growth - value if sought == BALANCE else force if sought == TURN else v
         if value == 0:
             return h
         if (value < 0) == falling:
@@ -113,12 +119,29 @@ def root(flight: Flight, sought: int, level: float, low: float, high: float, gue
     return h
 
 
+def top_speed(flight: PulseFlight, lo: float, hi: float) -> float:
+    """The largest |x'| between two moments: at one of them, or where x'' vanishes on either side of where x''' does."""
+    _, v_lo, force_lo, growth_lo = at(flight, lo)
+    _, v_hi, force_hi, growth_hi = at(flight, hi)
+    fastest = max(abs(v_lo), abs(v_hi))
+    bend, force_bend = hi, force_hi
+    if (v_lo + growth_lo) * (v_hi + growth_hi) < 0:
+        bend = root(flight, PULL, 0.0, lo, hi, nan, v_lo + growth_lo > 0)
+        _, _, force_bend, _ = at(flight, bend)
+    for start, force_start, stop, force_stop in ((lo, force_lo, bend, force_bend), (bend, force_bend, hi, force_hi)):
+        if force_start * force_stop < 0:
+            _, v, _, _ = at(flight, root(flight, SPEED, 0.0, start, stop, nan, force_start > 0))
+            fastest = max(fastest, abs(v))
+    return fastest
+
+
 def cross(
-    flight: Flight, angle: float, span: float, certain: float, timed: bool
-) -> tuple[int, float, float, float, float, float]:
+    flight: PulseFlight, angle: float, span: float, certain: float, timed: bool, fastest: float
+) -> tuple[int, float, float, float, float, float, float]:
     """Fly to the first impact, the end of the segment, or x >= certain going out.
 
-    Returns how it ended, tau, x and x' then, the peak on the way and when x last rose past 1 (NaN: it did not).
+    Returns how it ended, tau, x and x' then, the peak on the way, when x last rose past 1 (NaN: it did not), and the
+    largest |x'| or the `fastest` before.
 
     No turning point can be missed. With g = x'' - x', the growth of g e^tau is c W cos e^tau, whose zeros are known,
     and that of x' e^-tau is g e^-tau: g vanishes at most once between zeros of the cosine, and x' at most once between
@@ -146,6 +169,8 @@ def cross(
             x_cut, v_cut, _, _ = at(flight, cut)
             if v_lo * v_cut < 0:  # x turns twice: stop where that shows
                 hi, x_hi, v_hi, g_hi = cut, x_cut, v_cut, -g_lo
+        # Only where x' may exceed what it was is its largest sought.
+        faster = max(abs(v_lo), abs(v_hi)) + (hi - lo) * max(abs(v_lo + g_lo), abs(force)) > fastest
         rising = v_lo > 0
         turn, x_turn = hi, x_hi
         if rising == (v_hi <= 0):
@@ -163,19 +188,31 @@ def cross(
                 guess = hi - x_hi / v_hi if stop == hi and v_hi < 0 else nan
                 hit = root(flight, HEIGHT, 0.0, start, stop, guess, True)
                 _, v, _, _ = at(flight, hit)
-                return IMPACT, hit, 0.0, min(v, 0.0), peak, crossed
+                fastest = max(fastest, top_speed(flight, lo, hit)) if faster else fastest
+                return IMPACT, hit, 0.0, min(v, 0.0), peak, crossed, fastest
+        fastest = max(fastest, top_speed(flight, lo, hi)) if faster else fastest
         if v_hi >= 0 and x_hi >= certain:
-            return FALLEN, hi, x_hi, v_hi, peak, crossed
+            return FALLEN, hi, x_hi, v_hi, peak, crossed, fastest
         lo, x_lo, v_lo, g_lo = hi, x_hi, v_hi, g_hi
-    return REACHED, span, x_lo, v_lo, peak, crossed
+    return REACHED, span, x_lo, v_lo, peak, crossed, fastest
 
 
 def fly(
-    side: Side, sign: float, segments: Rows, amplitude: float, period: float, k: int, t: float, v: float, timed: bool
-) -> tuple[int, int, float, float, float, float]:
+    side: Side,
+    sign: float,
+    segments: Rows,
+    amplitude: float,
+    period: float,
+    k: int,
+    t: float,
+    v: float,
+    timed: bool,
+    fastest: float,
+) -> tuple[int, int, float, float, float, float, float]:
     """Follow one excursion from x = 0 at t, in segment k, through the pulse and after it.
 
-    Returns IMPACT or FALLEN, the segment it ended in, the time, x' at the impact, its peak and when it passed phi_cr.
+    Returns IMPACT or FALLEN, the segment it ended in, the time, x' at the impact, its peak, when it passed phi_cr, and
+    the largest |x'| or the `fastest` before.
     """
     x, peak, crossed = 0.0, 0.0, nan
     certain = 1.0
@@ -192,12 +229,12 @@ def fly(
             force = x - 1 + in_phase
             if x == 0 and v == 0:
                 force = max(force, 0.0)
-            flight = Flight(x, v, force, in_phase, out_of_phase, row[3] / (period * side.p))
-            event, h, x, v, top, passed = cross(flight, angle, span, certain, timed)
+            flight = PulseFlight(x, v, force, in_phase, out_of_phase, row[3] / (period * side.p))
+            event, h, x, v, top, passed, fastest = cross(flight, angle, span, certain, timed, fastest)
             peak = max(peak, top)
             crossed = t + passed / side.p if passed >= 0 else crossed
             if event != REACHED:
-                return event, k, t + h / side.p, v, peak, crossed
+                return event, k, t + h / side.p, v, peak, crossed, fastest
             t = stop
         k += 1
     # Free motion: x = 1 + out e^tau + (x - 1 - v)/2 e^-tau
@@ -205,11 +242,12 @@ def fly(
     if out >= 0:
         if x < 1:
             crossed = t + log((1 - x + v) / (2 * out)) / 2 / side.p if out > 0 else inf
-        return FALLEN, k, t, v, peak, crossed
+        return FALLEN, k, t, v, peak, crossed, fastest
     u = max(v * v + x * (2 - x), 0.0)  # the square of x' at the ground
     if v > 0:
         peak = max(peak, u / (1 + sqrt(max(1 - u, 0.0))))
-    return IMPACT, k, t + log1p((sqrt(u) + x + v) / (1 - x - v)) / side.p, -sqrt(u), peak, crossed
+    end = t + log1p((sqrt(u) + x + v) / (1 - x - v)) / side.p
+    return IMPACT, k, end, -sqrt(u), peak, crossed, max(fastest, abs(v), sqrt(u))
 
 
 def next_lift(
@@ -275,19 +313,22 @@ def follow(
     end = segments[len(segments) - 1][1] * period
     k, t, d, v = 0, 0.0, 0, 0.0
     resting, uplift = True, nan
-    highest = (0.0, 0.0)
+    highest = rates = (0.0, 0.0)
     count, free = 0, 0
     while count < EXCURSIONS or t >= end:
         if resting:
             k, t, lifted = next_lift(sides, segments, amplitude, period, k, t)
             if lifted < 0:
-                return Fate(DECIDED, d, count, uplift, highest, nan)
+                return Fate(DECIDED, d, count, uplift, highest, rates, nan)
             d, v, resting = lifted, 0.0, False
             uplift = uplift if uplift >= 0 else t
-        event, k, t, v, peak, crossed = fly(sides[d], 1.0 - 2.0 * d, segments, amplitude, period, k, t, v, timed)
+        event, k, t, v, peak, crossed, fastest = fly(
+            sides[d], 1.0 - 2.0 * d, segments, amplitude, period, k, t, v, timed, rates[d]
+        )
         highest = (max(highest[0], peak), highest[1]) if d == 0 else (highest[0], max(highest[1], peak))
+        rates = (fastest, rates[1]) if d == 0 else (rates[0], fastest)
         if event == FALLEN:
-            return Fate(OVERTURNED, d, count, uplift, highest, crossed)
+            return Fate(OVERTURNED, d, count, uplift, highest, rates, crossed)
         place = COLUMNS * count
         full = place + COLUMNS > len(impacts)
         if not full:
@@ -305,8 +346,8 @@ def follow(
             # the one that the pulse has left in the air may have had no time to show how high it could go.
             free += 1
             if free > 2 and (full or v <= STILL):
-                return Fate(DECIDED, d, count, uplift, highest, nan)
-    return Fate(SPENT, d, count, uplift, highest, nan)
+                return Fate(DECIDED, d, count, uplift, highest, rates, nan)
+    return Fate(SPENT, d, count, uplift, highest, rates, nan)
 
 
 def many(
@@ -320,7 +361,8 @@ def many(
 ) -> None:
     """Follow the pulses first to stop of many.
 
-    Each row of results takes the status, the side, the impacts, the uplift, and the peak of either direction.
+    Each row of results takes the status, the side, the impacts, the uplift, and the peaks and the largest rates of both
+    directions.
     """
     nothing = results[0][:0]
     for i in range(first, stop):
@@ -331,9 +373,11 @@ def many(
         results[i][3] = motion.uplift
         results[i][4] = motion.peaks[0]
         results[i][5] = motion.peaks[1]
+        results[i][6] = motion.rates[0]
+        results[i][7] = motion.rates[1]
 
 
-SOURCE = (at, root, cross, fly, next_lift, follow, many)
+SOURCE = (at, root, top_speed, cross, fly, next_lift, follow, many)
 """What is to be compiled, each after those it calls."""
 INLINE = (at,)
 """What of it is to be set into each place that calls it."""

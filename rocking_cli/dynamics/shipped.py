@@ -2,7 +2,8 @@
 
 `scripts/make_kernels.py` writes the libraries. A library depends on no other one: when it is loaded, it is given the
 addresses of the C functions that kernels call. These are the functions of this process, so that Python, which runs
-the kernels if a library cannot be used, calls the same ones. A library for Linux loads under any library of C.
+the kernels if a library cannot be used, calls the same ones. A library for Linux loads under any library of C. Kernels
+of lanes are in it once for each level of processors; the bits are the same.
 """
 
 from __future__ import annotations
@@ -18,21 +19,24 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from rocking_cli.dynamics.calling import ARRAYS, FUNCTIONS, KernelSet, Layout, symbol
+import numpy as np
+
+from rocking_cli.dynamics.calling import ARRAYS, FUNCTIONS, LEVELS, KernelSet, Layout, symbol
 from rocking_cli.errors import BrokenKernels
 
 READY_FOLDER = Path(__file__).with_name("ready")
 MANIFEST_FILE = "manifest.json"
-SOURCE_FILES = ("calling.py", "kernels.py", "openings.py", "pulse_motion.py", "stepping.py")
+SOURCE_FILES = ("calling.py", "kernels.py", "lanes.py", "openings.py", "pulse_motion.py", "rates.py", "stepping.py")
 """Source files of the shipped kernels, in this folder."""
-MADE_BY = {"numba": "0.61.2", "llvmlite": "0.44.0", "ziglang": "0.17.1"}
+MADE_BY = {"numba": "0.68.1", "llvmlite": "0.50.0", "ziglang": "0.17.1"}
 """Versions of the tools that build the shipped kernels."""
 
 LIBRARY_SUFFIXES = {"linux": "so", "darwin": "dylib", "win32": "dll"}
 PROCESSOR_NAMES = {"amd64": "x86_64", "arm64": "aarch64"}
 """Other names of processors, as systems report them."""
 LIBRARIES = (
-    "darwin-aarch64.dylib", "darwin-x86_64.dylib", "linux-aarch64.so", "linux-x86_64.so", "win32-x86_64.dll"
+    "darwin-aarch64.dylib", "darwin-x86_64.dylib", "linux-aarch64.so", "linux-x86_64.so", "win32-aarch64.dll",
+    "win32-x86_64.dll",
 )  # fmt: skip
 """The libraries that belong to the package."""
 FOR_ALL = "this rocking-cli was installed for any system, without kernels"
@@ -63,9 +67,16 @@ def place() -> Path:
     return READY_FOLDER / f"{sys.platform}-{PROCESSOR_NAMES.get(machine, machine)}.{ending}"
 
 
-def load(kernel: KernelSet) -> Any:
-    """Return the function of a kernel. Raises `ImportError` if its library cannot be used."""
-    return ctypes.CFUNCTYPE(ctypes.c_int32, *_ARGUMENT_TYPES)((symbol(kernel.name), loaded()))
+def load(kernel: KernelSet, level: str = LEVELS[-1]) -> Any:
+    """Return the function of a kernel, of lanes at a level. Raises `ImportError` if its library cannot be used."""
+    name = symbol(kernel.name, level if kernel.lanes else "")
+    return ctypes.CFUNCTYPE(ctypes.c_int32, *_ARGUMENT_TYPES)((name, loaded()))
+
+
+def levels() -> tuple[str, ...]:
+    """Return the levels that this processor and its system have, the highest first. Raises as `load`."""
+    highest = loaded().rocking_level()
+    return tuple(each for each in LEVELS if int(each[1:]) <= highest)
 
 
 @functools.cache
@@ -93,27 +104,37 @@ def loaded() -> ctypes.CDLL:
     return library
 
 
-def call(entry: Any, kernel: KernelSet, arguments: Sequence[Any]) -> None:
-    """Call a shipped kernel.
+def rows_of(kernel: KernelSet, arguments: Sequence[Any]) -> tuple[Any, Any, Any]:
+    """Return arguments as the three rows that the code of a kernel reads.
 
     Raises
     ------
     TypeError
         If an array does not have the type or the layout that the code requires, so that it would read other memory.
-    RuntimeError
-        If the code reports an error.
     """
     whole: list[int] = []
     real: list[float] = []
     places: list[int] = []
     _pack(kernel.arguments, arguments, whole, real, places)
-    status = entry(
+    return (
         (ctypes.c_int64 * len(whole))(*whole),
         (ctypes.c_double * len(real))(*real),
         (ctypes.c_int64 * len(places))(*places),
     )
+
+
+def call(entry: Any, kernel: KernelSet, arguments: Sequence[Any]) -> None:
+    """Call a shipped kernel. Raises as `rows_of`; `RuntimeError` if the code reports an error."""
+    status = entry(*rows_of(kernel, arguments))
     if status:
         raise RuntimeError(f"the kernel {kernel.name} ended with status {status}")
+
+
+def prepared(entry: Any, kernel: KernelSet, *arguments: Any) -> tuple[Any, Any]:
+    """Return the addresses of a kernel and of its rows, for a kernel that calls it, and what keeps them alive."""
+    rows = rows_of(kernel, arguments)
+    places = [ctypes.cast(entry, ctypes.c_void_p).value, *map(ctypes.addressof, rows)]
+    return np.array(places, dtype=np.int64), rows
 
 
 def _pack(

@@ -434,7 +434,7 @@ def settle(
     )
     arrived = ~np.isnan(slip.arrives)
     known = np.full((slides.size, stepping.MARKS), nan)
-    for column in (stepping.PEAK, openings.PASSED_PEAK):
+    for column in (stepping.PEAK, stepping.RATE_PEAK, openings.PASSED_PEAK):
         known[:, column : column + 2] = 0.0
     known[:, [stepping.SIDE, stepping.IMPACTS, openings.PASSED_IMPACTS, openings.LARGEST, openings.LONGEST]] = 0.0
     known[:, stepping.STATUS], known[:, stepping.ENDED] = kernels.AT_REST, slip.ends

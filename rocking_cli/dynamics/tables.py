@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
+from numpy.polynomial import chebyshev, polynomial
 
 from rocking_cli.arrays import Bools, Integers, Reals
 from rocking_cli.core import Direction, Mechanism, both_statics
@@ -21,6 +22,9 @@ from rocking_cli.short_repr import short_repr
 CRITICAL_CELLS = 512  # cells up to phi_cr; coefficients are then accurate to 1e-12, those of short links to 1e-10
 MIN_CELLS, MAX_CELLS = 2048, 16384  # bounds on the number of cells from rest to the kinematic limit
 MAX_CORNER_CELLS = 65536  # largest number of cells that put a corner of the force near rest on a node
+PAIRS = (5, 6, 8, 10)  # numbers of pairs of powers from which that of the polynomials of the forces is chosen
+MOST_PAIRS = PAIRS[-1]
+SMOOTH = 2e-12  # largest difference of a polynomial, over the largest force
 LIMIT_SHARE = 0.999  # end of the table over the kinematic limit, where a locking linkage has infinite inertia
 
 
@@ -66,6 +70,13 @@ class DirectionTable:
     def rest_rate(self) -> float:
         """dphi/dq at rest."""
         return float(self.angles[0, 4])
+
+    def phi(self, q: Reals) -> Reals:
+        """Return the rotations [rad] at some q within the table."""
+        k = np.clip((q / self.cell).astype(np.int64), 0, len(self.angles) - 1)
+        a0, a1, a2, a3 = self.angles[k, :4].T
+        x = q / self.cell - k
+        return np.asarray(a0 + x * (a1 + x * (a2 + x * a3)))
 
     def q(self, phi: float) -> float:
         """Return q at a rotation [rad] within the table."""
@@ -190,6 +201,34 @@ def _one_direction(mechanism: Mechanism, direction: Direction, cells: int) -> Di
         held,
         np.cumsum(np.concatenate([[False], bent[1:] | bent[:-1]])),
     )
+
+
+def polynomials(mechanism: Mechanism, direction: Direction, table: DirectionTable, reach: float) -> tuple[int, Reals]:
+    """Return the forces from rest up to q = reach as polynomials in y = 2 q/reach - 1.
+
+    Returns
+    -------
+    int
+        Number of pairs of powers; 0 if polynomials of no number are as accurate as the tables.
+    ndarray, shape (4 MOST_PAIRS,)
+        Even and odd power of (G + Q/g)/sqrt(I), then of B/sqrt(I), of each pair.
+    """
+    count = 2 * MOST_PAIRS
+    nodes = np.cos(np.pi * (np.arange(count) + 0.5) / count)  # of Chebyshev
+    places = (np.concatenate([nodes, np.linspace(-1.0, 1.0, 8 * count + 1)]) + 1) * (reach / 2)
+    at = mechanism.coefficients(table.phi(places), direction)
+    values = np.array([at.restoring(mechanism.gravity), at.B]) / np.sqrt(at.I)
+    fitted = chebyshev.chebfit(nodes, values[:, :count].T, count - 1)
+    between = places[count:] * (2 / reach) - 1
+    largest = np.abs(values).max(axis=1)
+    for pairs in PAIRS:
+        powers = np.array([chebyshev.cheb2poly(each) for each in fitted[: 2 * pairs].T])
+        missed = polynomial.polyval(between, powers.T) - values[:, count:]
+        if (np.abs(missed).max(axis=1) <= SMOOTH * largest).all():
+            result = np.zeros(4 * MOST_PAIRS)
+            result[: 4 * pairs] = powers.reshape(2, pairs, 2).transpose(1, 0, 2).ravel()
+            return pairs, result
+    return 0, np.zeros(4 * MOST_PAIRS)
 
 
 def _even_steps(mechanism: Mechanism, direction: Direction, cells: int) -> tuple[Reals, float]:

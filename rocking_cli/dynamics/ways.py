@@ -1,7 +1,8 @@
-"""The two ways to run a kernel, and the choice between them.
+"""The ways to run a kernel, and the choice between them.
 
-The kernels have one source. The machine code that is shipped (`shipped`) runs them; if it cannot be used, Python does,
-which takes some sixty times longer and gives a warning. Both give the same numbers.
+The kernels have one source. The machine code that is shipped (`shipped`) runs them, several histories of a batch at
+once in the lanes of vectors, at the highest level that the processor has; if it cannot be used, Python does, which
+takes some sixty times longer and gives a warning. All give the same numbers.
 """
 
 from __future__ import annotations
@@ -18,16 +19,20 @@ from typing import Any
 
 import numpy as np
 
-from rocking_cli.dynamics.calling import SETS, KernelSet
+from rocking_cli.dynamics.calling import LEVELS, SETS, KernelSet
 from rocking_cli.errors import InputError, KernelWarning, warn
 
 KERNELS_VARIABLE = "ROCKING_KERNELS"
 """Environment variable that selects how kernels are run; no alternative is then tried."""
-MACHINE_CODE, PYTHON = "ready", "python"
+MACHINE_CODE, SCALAR, PYTHON = "ready", "scalar", "python"
+CHOICES = (MACHINE_CODE, *LEVELS, SCALAR, PYTHON)
+"""What it accepts: machine code at the highest level, at a level, or without lanes; or Python."""
 
-Kernel = Callable[..., None]
+Kernel = Callable[..., Any]
 _LOCK = threading.RLock()
 _forced: str | None = None
+last: str | None = None
+"""The way that was taken last; None before there was any."""
 
 
 def kernel(of: KernelSet) -> Kernel:
@@ -35,9 +40,23 @@ def kernel(of: KernelSet) -> Kernel:
     return _chosen()[1][of.name]
 
 
+def lanes(of: KernelSet) -> Kernel | None:
+    """Return the function that runs a kernel of lanes; None if histories are to be computed one by one."""
+    return _chosen()[1].get(of.name)
+
+
 def way() -> str:
-    """Return the way in which kernels are run: `MACHINE_CODE` or `PYTHON`."""
+    """Return the way in which kernels are run: the level of lanes, `SCALAR` or `PYTHON`."""
     return _chosen()[0]
+
+
+def usable() -> tuple[str, ...]:
+    """Return the ways that this machine has, the fastest first."""
+    if fault_of_shipped() is not None:
+        return (PYTHON,)
+    from rocking_cli.dynamics import shipped
+
+    return (*shipped.levels(), SCALAR, PYTHON)
 
 
 @contextmanager
@@ -60,23 +79,31 @@ def forget() -> None:
 
 
 def _chosen() -> tuple[str, dict[str, Kernel]]:
+    global last
     with _LOCK:  # the threads of a batch call this at the same time
-        return _choose(_forced or os.environ.get(KERNELS_VARIABLE) or None)
+        chosen = _choose(_forced or os.environ.get(KERNELS_VARIABLE) or None)
+        last = chosen[0]
+    return chosen
 
 
 @functools.cache
 def _choose(requested: str | None) -> tuple[str, dict[str, Kernel]]:
-    if requested not in (None, MACHINE_CODE, PYTHON):
-        raise InputError(f"{KERNELS_VARIABLE} is {requested!r}: give one of {MACHINE_CODE}, {PYTHON}")
-    if requested != PYTHON:
-        fault = fault_of_shipped()
-        if fault is None:
-            return MACHINE_CODE, {name: as_shipped(of) for name, of in SETS.items()}
-        if requested == MACHINE_CODE:
-            raise InputError(f"{KERNELS_VARIABLE} is {requested!r}, but {fault}: leave it out") from fault
+    if requested not in (None, *CHOICES):
+        raise InputError(f"{KERNELS_VARIABLE} is {requested!r}: give one of {', '.join(CHOICES)}")
+    fault = None if requested == PYTHON else fault_of_shipped()
+    if fault is not None and requested is not None:
+        raise InputError(f"{KERNELS_VARIABLE} is {requested!r}, but {fault}: leave it out") from fault
+    if fault is not None:
         text = f"time histories are computed by Python itself, which takes some sixty times longer ({fault})"
         warn(KernelWarning(text))
-    return PYTHON, {name: in_python(of) for name, of in SETS.items()}
+    if fault is not None or requested == PYTHON:
+        return PYTHON, {name: in_python(of) for name, of in SETS.items() if not of.lanes}
+    here = usable()
+    way = here[0] if requested in (None, MACHINE_CODE) else requested
+    if way not in here:
+        levels = ", ".join(each for each in here if each in LEVELS)
+        raise InputError(f"{KERNELS_VARIABLE} is {way!r}, but this processor has only {levels}: take one of these")
+    return way, {name: as_shipped(of, way) for name, of in SETS.items() if way != SCALAR or not of.lanes}
 
 
 def fault_of_shipped() -> ImportError | None:
@@ -89,11 +116,13 @@ def fault_of_shipped() -> ImportError | None:
     return None
 
 
-def as_shipped(of: KernelSet) -> Kernel:
+def as_shipped(of: KernelSet, level: str = LEVELS[-1]) -> Kernel:
     """Return a kernel of the shipped library. Raises `ImportError` if it cannot be used."""
     from rocking_cli.dynamics import shipped  # some builds of Python have no ctypes
 
-    entry = shipped.load(of)
+    entry = shipped.load(of, level)
+    if of.lanes:
+        return functools.partial(shipped.prepared, entry, of)
 
     def run(*arguments: Any) -> None:
         shipped.call(entry, of, arguments)

@@ -30,6 +30,7 @@ LONG_NAMES = {
     "opening": "largest opening of a joint over D_cr",
     "overturned": "whether, or by which share, it overturns",
     "peak_lower_bound": "lower bound of the peak ratio",
+    "peak_rate": "peak angular velocity",
     "peak_ratio": "peak rotation over the critical rotation",
     "pga_g": "peak ground acceleration",
     "pgv": "peak ground velocity",

@@ -81,7 +81,14 @@ class TestInfo:
 
     def test_it_knows_what_runs_the_kernels(self, monkeypatch):
         monkeypatch.delenv("ROCKING_KERNELS", raising=False)
-        assert run_json("info")["slow_kernels"] is None
+        found = run_json("info")
+        assert found["slow_kernels"] is None and found["kernels"] == shipped.levels()[0]
+        said = run("-v", "respond", BLOCK, "--pulse", "sine:0.4g:0.5s").output
+        assert f", kernels {found['kernels']}" in said
+        monkeypatch.setenv("ROCKING_KERNELS", "v9")
+        found = run_json("info")
+        assert found["kernels"] is None and found["slow_kernels"].startswith("ROCKING_KERNELS is 'v9': give one of")
+        monkeypatch.delenv("ROCKING_KERNELS")
         monkeypatch.setattr(shipped, "LIBRARIES", ())
         shipped.loaded.cache_clear()
         assert run_json("info")["slow_kernels"].startswith("no kernels are shipped for ")

@@ -17,9 +17,9 @@ from rocking_cli.core import Direction
 from rocking_cli.core.structure_fields import DirectionalRestitution
 from rocking_cli.dynamics import batch
 from rocking_cli.dynamics.batch import Runs, respond_many
-from rocking_cli.dynamics.deck import never_lifts, run_deck
+from rocking_cli.dynamics.deck import never_lifts, run_deck, run_lanes
 from rocking_cli.dynamics.model import MODELS
-from rocking_cli.dynamics.outcome import OUTCOME_FIELDS
+from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, ROTATIONS
 from rocking_cli.errors import InputError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.structure import build_models
@@ -154,7 +154,7 @@ def test_a_size_is_the_structure_with_every_length_so_much_larger(name, k):
     np.testing.assert_array_equal(got.fell_to, expected.fell_to)
     assert not (got.failed | expected.failed).any()
     np.testing.assert_array_equal(got.unknown, expected.unknown)
-    for column in ("peak_positive", "peak_negative", "peak_ratio", "overturning_time", "uplift_time"):
+    for column in (*ROTATIONS, "peak_ratio", "overturning_time", "uplift_time"):
         # The end of one that becomes unknown is that of a step, and the peak that on the way there.
         for these, within in ((~got.unknown, 1e-10), (got.unknown, 1e-6)):
             one, other = getattr(got, column)[these], getattr(expected, column)[these]
@@ -181,9 +181,9 @@ def test_what_is_more_slender_feels_less_of_the_horizontal_acceleration_alone(na
     got = respond_many(every, motions(), replace(runs, slender=np.full(len(runs), k)))
     weaker = [replace(motion, acceleration=motion.acceleration / k) for motion in motions()]
     expected = respond_many(every, weaker, runs)
-    for column in set(COLUMNS) - {"peak_positive", "peak_negative"}:
+    for column in set(COLUMNS) - set(ROTATIONS):
         np.testing.assert_array_equal(getattr(got, column), getattr(expected, column), err_msg=column)
-    for column in ("peak_positive", "peak_negative"):
+    for column in ROTATIONS:
         np.testing.assert_array_equal(getattr(got, column), k * getattr(expected, column), err_msg=column)
     assert 0 < got.fell.sum() < len(runs)
     plain = respond_many(every, motions(), runs)
@@ -236,14 +236,14 @@ def test_an_interruption_in_progress_stops_what_has_not_begun(monkeypatch, error
     every, runs = mixed(400)
     begun = []
 
-    def counted(*args, **options):
-        begun.append(args[3])
-        return run_deck(*args, **options)
+    def counted(run):
+        return lambda *args, **options: begun.append(args[3]) or run(*args, **options)
 
     def interrupt(done):
         raise error
 
-    monkeypatch.setattr(batch, "run_deck", counted)
+    monkeypatch.setattr(batch, "run_deck", counted(run_deck))
+    monkeypatch.setattr(batch, "run_lanes", counted(run_lanes))
     monkeypatch.setattr(batch, "HISTORIES_PER_TASK", 1)
     with pytest.raises(error):  # of released structures, as those that never lift are done before any begins
         respond_many(every, motions(), runs, release=0.2, threads=1, progress=interrupt)

@@ -97,7 +97,7 @@ def near(value, **tolerance):
 
 
 class Reference:
-    """What happens under a pulse, in 50 digits; `peaks` are phi/phi_cr in both directions."""
+    """What happens under a pulse, in 50 digits; `peaks` are phi/phi_cr in both directions, `rates` |phi.| [rad/s]."""
 
     def __init__(self, equivalence, pulse, polarity):
         self.blocks = {1: equivalence.positive, -1: equivalence.negative}
@@ -107,7 +107,7 @@ class Reference:
         ]
         self.pieces.append((self.pieces[-1][1], MP.mpf(1e3), MP.zero, MP.zero, MP.zero))
         self.pulse_end = self.pieces[-1][0]
-        self.peaks = {1: MP.zero, -1: MP.zero}
+        self.peaks, self.rates = {1: MP.zero, -1: MP.zero}, {1: MP.zero, -1: MP.zero}
         self.excursions, self.impacts, self.uplift = [], [], None
         self.overturned, self.fell_to = False, 0
         self.margin = MP.mpf(1)
@@ -179,7 +179,9 @@ class Reference:
                 T = MP.log((phi_cr + MP.sqrt(phi_cr**2 - 4 * P * Q)) / (-2 * P)) / p
                 if v > 0:
                     peak = max(peak, 1 - 2 * MP.sqrt(P * Q) / phi_cr)
-                return t + T, p * (P * MP.exp(p * T) - Q * MP.exp(-p * T)), peak
+                hit = p * (P * MP.exp(p * T) - Q * MP.exp(-p * T))
+                self.rates[side] = max(self.rates[side], abs(v), abs(hit))
+                return t + T, hit, peak
 
             def x(s, angle=angle, D=D, P=P, Q=Q, w=w):
                 e = MP.exp(p * s)
@@ -188,6 +190,14 @@ class Reference:
             def dx(s, angle=angle, D=D, P=P, Q=Q, w=w):
                 e = MP.exp(p * s)
                 return D * w * MP.cos(angle + w * s) + p * (P * e - Q / e)
+
+            def ddx(s, angle=angle, D=D, P=P, Q=Q, w=w):
+                e = MP.exp(p * s)
+                return p * p * (P * e + Q / e) - D * w * w * MP.sin(angle + w * s)
+
+            def gather(low, high):
+                turns = [bisect(ddx, low, high)] if ddx(low) * ddx(high) < 0 else []
+                self.rates[side] = max(self.rates[side], *(abs(dx(s)) for s in (low, *turns, high)))
 
             whole = stop - t
             n = 60 + int(40 * whole * (p + w))
@@ -202,7 +212,9 @@ class Reference:
                     peak = max(peak, x(bisect(dx, low / 1000, high)) / phi_cr)
                 if high_x <= 0:
                     hit = bisect(x, low, high)
+                    gather(low, hit)
                     return t + hit, dx(hit), peak
+                gather(low, high)
                 if low_v > 0 >= high_v:
                     peak = max(peak, x(bisect(dx, low, high)) / phi_cr)
                 peak = max(peak, high_x / phi_cr)
@@ -277,6 +289,8 @@ def test_exact_answer_agrees_with_50_digits(shape, a, w, polarity, equivalence):
         assert got.peak_ratio == approx(float(max(wanted.peaks.values())), abs=1e-10)
         assert got.peak_positive / one.phi_cr == approx(float(wanted.peaks[1]), abs=1e-10)
         assert got.peak_negative / equivalence.negative.phi_cr == approx(float(wanted.peaks[-1]), abs=1e-10)
+        rates = float(wanted.rates[1]), float(wanted.rates[-1])
+        assert (got.peak_rate_positive, got.peak_rate_negative) == approx(rates, rel=1e-9, abs=1e-10)
     assert known(got.first_excursion) == near(next(iter(wanted.excursions), None), abs=1e-10)
     assert known(got.first_excursion) == near(next(iter(wanted.excursions), None), rel=1e-6)
     for found, peak in zip((got.first_excursion, got.first_rebound), wanted.excursions, strict=False):

@@ -475,6 +475,7 @@ def hollow(end):
     )
     table = DirectionTable(forces, angles, np.array([-1.0]), np.array([0.0, end]), end)
     numbers = [2.0, 1.0, 0.9, 1.0, 1e-6, end, 1 / end, 1.0, 0.0, 1.0, 0.0, 0.0, np.inf, np.nan]
+    numbers += [1.0, 0.0, end, 0.0, 0.0]
     both = (np.stack([part, part], axis=1) for part in (forces, angles, table.certain))
     return Model("nonlinear", "hollow", (1.0, 1.0), np.array([numbers, numbers]), *both, (table, table))
 

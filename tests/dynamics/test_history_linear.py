@@ -14,6 +14,7 @@ from tests.following import respond
 from tests.reference_history import Linear
 
 MODELS = ["linear1", "linear2"]
+RATE = 1e-8  # what is left of a peak rate where its turning point is found
 
 
 @cache
@@ -59,6 +60,8 @@ def agree(name, history, reference, tolerance=1e-12):
         phi_cr = (equivalence(name).positive if s > 0 else equivalence(name).negative).phi_cr
         if not np.isnan(peak):
             assert abs(float(reference.peaks[s] - peak)) < tolerance * phi_cr
+            rate = history.peak_rate_positive if s > 0 else history.peak_rate_negative
+            assert rate == pytest.approx(float(reference.rates[s]), rel=RATE, abs=tolerance)
     if reference.uplift is None:
         assert np.isnan(history.uplift_time)
     else:

@@ -22,7 +22,7 @@ from tests.reference_history import Nonlinear
 from tests.unchecked import UncheckedArch
 
 # What the tables and a local error of 1e-10 allow; most structures come ten times closer.
-TIME, PEAK = 5e-10, 5e-10
+TIME, PEAK, RATE = 5e-10, 5e-10, 1e-8
 
 LEANING = [[0.0, 0.0], [1.0, 0.0], [1.1, 3.0], [0.3, 3.2]]
 
@@ -79,6 +79,9 @@ def agree(history, reference, phi_cr, time=TIME, peak=PEAK):
     for s, value in ((1, history.peak_positive), (-1, history.peak_negative)):
         if not np.isnan(value):
             assert value == pytest.approx(reference.peaks[s], rel=peak, abs=1e-13 * phi_cr)
+    for s, value in ((1, history.peak_rate_positive), (-1, history.peak_rate_negative)):
+        if not np.isnan(value):
+            assert value == pytest.approx(reference.rates[s], rel=RATE)
     if history.overturned:
         assert history.overturning_time == pytest.approx(reference.crossings[-1], abs=time)
     if reference.uplift is None:

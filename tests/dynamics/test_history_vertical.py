@@ -82,6 +82,8 @@ def agree(history, expected, phi_cr=0.2):
             assert peak <= expected.peaks[s] * (1 + 1e-9)
         else:
             assert np.isnan(peak) or peak == pytest.approx(expected.peaks[s], rel=1e-9, abs=1e-12 * phi_cr)
+            rate = history.peak_rate_positive if s > 0 else history.peak_rate_negative
+            assert np.isnan(rate) or rate == pytest.approx(expected.rates[s], rel=1e-8, abs=1e-12)
     if history.overturned:
         assert history.overturning_time == pytest.approx(expected.crossings[-1], abs=1e-9)
     if expected.uplift is None:

@@ -46,7 +46,7 @@ def of_block(mu=MU, opening=0.005):
         np.empty((2, stepping.COLUMNS)), np.empty((1, openings.KEPT)), np.empty(openings.NOTES), np.empty(4, np.int64)
     )
     nothing = np.empty(0)
-    motion = kernels.Motion(nothing, 1.0, 0.01, nothing, 1.0, 0.01, nothing, nothing, nothing)
+    motion = kernels.Motion(nothing, 1.0, 0.01, nothing, 1.0, 0.01, nothing, nothing, nothing, nothing)
     return begun(openings.watch_of(deck.joints, 0, 1.0, 1.0, motion, room))
 
 

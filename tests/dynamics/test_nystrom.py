@@ -10,7 +10,7 @@ from mpmath import mp
 
 from mechanisms.block import Block
 from rocking_cli.core import equivalent_block
-from rocking_cli.dynamics.stepping import Ground, Law, State, force, nystrom
+from rocking_cli.dynamics.stepping import Ground, Law, State, by_table, nystrom
 from rocking_cli.excitation.base import GroundMotion
 from tests.following import respond
 from tests.reference_history import Nonlinear
@@ -18,7 +18,7 @@ from tests.reference_history import Nonlinear
 # q.. = -(g (1 - 0.8 q - 0.3 q^2 + 0.5 q^3) + u (0.7 + 0.4 q - 0.6 q^2 + 0.2 q^3)), all one cell of a table.
 G, B = (1.0, -0.8, -0.3, 0.5), (0.7, 0.4, -0.6, 0.2)
 FORCES = np.array([[G + B, G + B]])
-LAW = Law(False, 0, 1.0, 1.0, 0.0, 1.0, 10.0, np.inf, 1.0)
+LAW = Law(False, 0, 1.0, 1.0, 0.0, 1.0, 10.0, np.inf, 1.0, 0, 0.0)
 GROUND = Ground(-1.5, 1.3, 1.1, -0.7)
 STARTS = ((0.4, -0.3), (0.1, 0.5), (0.7, 0.2), (0.2, -0.6))
 
@@ -43,9 +43,9 @@ def exact(start, end):
 def advance(start, end, steps):
     """The state after so many steps, and the errors the last one reports."""
     h = end / steps
-    state = State(*start, force(FORCES, LAW, start[0], GROUND.push, GROUND.g))
+    state = State(*start, by_table(FORCES, LAW, start[0], GROUND.push, GROUND.g))
     for k in range(steps):
-        state, e_q, e_w = nystrom(FORCES, LAW, GROUND, k * h, state, h)
+        state, e_q, e_w, _ = nystrom(by_table, FORCES, LAW, GROUND, k * h, state, h)
     return state, (e_q, e_w)
 
 
@@ -79,7 +79,7 @@ def test_one_step_is_right_to_the_7th_power_and_reports_the_5th():
 def test_the_force_at_the_end_of_a_step_is_the_one_the_next_begins_with():
     state, _ = advance(STARTS[0], 0.5, 1)
     push, g = GROUND.push + 0.5 * GROUND.ramp, GROUND.g + 0.5 * GROUND.grade
-    assert state.f == force(FORCES, LAW, state.q, push, g)
+    assert state.f == by_table(FORCES, LAW, state.q, push, g)
 
 
 def test_a_violent_blow_in_a_calm_record_is_followed_by_steps_of_its_own():

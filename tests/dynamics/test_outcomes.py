@@ -30,6 +30,7 @@ def read(status=kernels.AT_REST, side=0, **noted):
         marks[0, getattr(stepping if hasattr(stepping, name) else openings, name)] = value
     marks[0, [stepping.STATUS, stepping.SIDE]] = status, side
     marks[0, stepping.PEAK : stepping.PEAK + 2] = 0.1, 0.3
+    marks[0, stepping.RATE_PEAK : stepping.RATE_PEAK + 2] = 0.7, 0.6
     if "PASSED" in noted:
         marks[0, openings.PASSED_PEAK : openings.PASSED_PEAK + 2] = 0.05, 0.04
         marks[0, openings.PASSED_IMPACTS] = 1
@@ -52,6 +53,7 @@ def test_of_a_run_that_is_known_all_is_said():
     found = read()
     assert not found.unknown and isnan(found.known_to) and isnan(found.warned) and isnan(found.lower_bound)
     assert (found.peak_positive, found.peak_negative, found.peak_ratio) == pytest.approx((0.1, 0.3, 0.75))
+    assert (found.peak_rate_positive, found.peak_rate_negative, found.peak_rate) == (0.7, 0.6, 0.7)
     assert (found.uplift_time, found.impact_count, found.end_time, found.opening) == (1.0, 2, 9.0, 0.002)
     assert found.at_rest and found.lifted and found.fell_to == 0 and isnan(found.overturning_time)
 
@@ -86,6 +88,8 @@ def test_overturning_is_known_if_it_is_past_its_critical_rotation_before_a_joint
     assert found.fell_to == (1 - 2 * side if falls else 0)
     peaks = found.peak_positive, found.peak_negative
     assert [isnan(peak) for peak in peaks] == [falls and side == 0, falls and side == 1]
+    rates = found.peak_rate_positive, found.peak_rate_negative
+    assert [isnan(rate) for rate in rates] == [isnan(peak) for peak in peaks] and isnan(found.peak_rate) == falls
     assert (found.overturning_time == 4.0) == isnan(found.peak_ratio) == falls
     assert (found.end_time == 9.0) == falls == (found.impact_count == 2) == isnan(found.known_to)
 

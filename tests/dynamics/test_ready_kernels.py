@@ -1,5 +1,7 @@
 """The kernels that are shipped: what is in their libraries, and that all ways to run them give the same bits."""
 
+import base64
+import ctypes
 import functools
 import hashlib
 import json
@@ -19,15 +21,16 @@ import pytest
 
 from rocking_cli import GroundMotion
 from rocking_cli.core.structure_file import load_structure
-from rocking_cli.dynamics import calling, pulse_motion, shipped, ways
+from rocking_cli.dynamics import pulse_motion, shipped, ways
 from rocking_cli.dynamics.batch import Runs, respond_many
-from rocking_cli.dynamics.calling import FUNCTIONS, HISTORIES, PULSES, SETS, TIED
+from rocking_cli.dynamics.calling import FUNCTIONS, HISTORIES, LANES, LEVELS, PULSES, SETS, STEPS, TIED, symbol
 from rocking_cli.dynamics.exact_batch import exact_many
 from rocking_cli.dynamics.history import follow
 from rocking_cli.errors import BrokenKernels, InputError, KernelWarning
 from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.structure import Structure
 from tests.conftest import EXAMPLES, PROJECT
+from tests.dynamics import toy_lanes
 
 RNG = np.random.default_rng(31)
 SHAKING = GroundMotion("shaking", 0.01, 3.0 * RNG.standard_normal(150), unit="m/s2")
@@ -74,20 +77,24 @@ class TestWhatIsShipped:
         assert hashlib.sha256(content).hexdigest() == shipped.manifest()["files"][name]
         if name.endswith(".so"):  # of the others the linker sees to it
             assert missing(content) == []
-        for entry in (*SETS, *FUNCTIONS):
-            assert calling.symbol(entry).encode() + b"\0" in content
+        levels = LEVELS if "x86_64" in name else LEVELS[-1:]
+        sets = [each for each in SETS.values() if name != "wasm.wasm" or each not in (LANES, STEPS)]
+        entries = [symbol(each.name, level) for each in sets for level in (levels if each.lanes else [""])]
+        if name != "wasm.wasm":  # that imports what it calls
+            entries += ["rocking_level", *map(symbol, FUNCTIONS)]
+        assert all(entry.encode() in content for entry in entries)
         assert not any(each in content for each in (b"NRT_", b"/home", b"/tmp", b"/root", str(PROJECT).encode()))
 
     def test_they_are_small_and_all_of_them(self):
         files = {each.name: each.stat().st_size for each in shipped.READY_FOLDER.iterdir()}
         assert files.keys() == {*shipped.manifest()["files"], shipped.MANIFEST_FILE}
-        assert shipped.manifest()["files"].keys() == {*shipped.LIBRARIES}
-        assert sum(files.values()) < 1.6e6
+        assert {*shipped.LIBRARIES} <= shipped.manifest()["files"].keys()
+        assert max(files.values()) < 6e5 and sum(files.values()) < 3.1e6  # three levels of one processor
 
     @pytest.mark.parametrize("system, machine, name", [
         ("linux", "x86_64", "linux-x86_64.so"), ("linux", "aarch64", "linux-aarch64.so"),
         ("darwin", "arm64", "darwin-aarch64.dylib"), ("darwin", "x86_64", "darwin-x86_64.dylib"),
-        ("win32", "AMD64", "win32-x86_64.dll"),
+        ("win32", "AMD64", "win32-x86_64.dll"), ("win32", "ARM64", "win32-aarch64.dll"),
     ])  # fmt: skip
     def test_each_system_finds_its_own(self, monkeypatch, system, machine, name):
         monkeypatch.setattr(shipped.sys, "platform", system)
@@ -158,7 +165,7 @@ def _bits(way):
 def bits_of_shipped(choose):
     choose("ready")
     found = _bits("ready")
-    assert ways.way() == "ready"
+    assert ways.way() in (*LEVELS, ways.SCALAR)
     return found
 
 
@@ -179,7 +186,7 @@ class TestSameBits:
         compiled = import_module("by_numba").compiled
         shipped_bits = bits_of_shipped(choose)
         made = {each.module: compiled(import_module(each.module)) for each in SETS.values()}
-        by_name = {name: made[each.module][each.function] for name, each in SETS.items()}
+        by_name = {name: made[each.module][each.function] for name, each in SETS.items() if not each.lanes}
         monkeypatch.setattr(ways, "_chosen", lambda: ("numba", by_name))
         found = bits_of_histories(), bits_of_pulses()
         monkeypatch.undo()
@@ -210,7 +217,7 @@ class TestWays:
         else:
             monkeypatch.setattr(shipped, "load", refuse)
         with pytest.warns(KernelWarning, match=rf"some sixty times longer \(.*{why}") as said:
-            assert ways.way() == "python" and all(map(ways.kernel, SETS.values()))
+            assert ways.way() == "python" and all(ways.kernel(of) for of in SETS.values() if not of.lanes)
         assert len(said) == 1
         monkeypatch.undo()
 
@@ -222,7 +229,7 @@ class TestWays:
 
     def test_a_wrong_choice_is_named(self, choose):
         choose("fast")
-        with pytest.raises(InputError, match="ROCKING_KERNELS is 'fast': give one of ready, python"):
+        with pytest.raises(InputError, match="is 'fast': give one of ready, v4, v3, v1, scalar, python"):
             ways.kernel(HISTORIES)
 
     def test_python_chosen_says_nothing(self, choose):
@@ -231,9 +238,181 @@ class TestWays:
             warnings.simplefilter("error")
             ways.kernel(PULSES)
 
+    @pytest.mark.parametrize("level", LEVELS)
+    def test_a_level_is_taken_or_refused(self, choose, level):
+        choose(level)
+        if level in shipped.levels():
+            assert ways.way() == level and ways.kernel(PULSES)
+        else:
+            with pytest.raises(InputError, match=f"is '{level}', but this processor has only .*v1: take one of these"):
+                ways.kernel(PULSES)
 
-def refuse(of):
+    def test_a_processor_without_extensions_takes_the_lowest(self, choose, monkeypatch):
+        monkeypatch.setattr(shipped, "levels", lambda: ("v1",))
+        choose()
+        assert ways.way() == "v1" and ways.usable() == ("v1", "scalar", "python")
+        choose("v3")
+        with pytest.raises(InputError, match="this processor has only v1"):
+            ways.way()
+
+    def test_without_lanes_and_by_python_batches_are_scalar(self, choose, monkeypatch):
+        monkeypatch.setitem(ways.SETS, "toy", toy_lanes.TOY)
+        monkeypatch.setattr(shipped, "load", lambda of, level: None)
+        for way in ("v1", "scalar", "python"):
+            choose(way)
+            assert (ways.lanes(toy_lanes.TOY) is None) == (way != "v1")
+
+
+def refuse(*of):
     raise ImportError("no library here")
+
+
+CPUINFO = Path("/proc/cpuinfo")
+V3 = {"fma", "pni", "ssse3", "cx16", "sse4_1", "sse4_2", "movbe", "popcnt", "avx", "f16c", "lahf_lm", "abm", "bmi1",
+      "avx2", "bmi2"}  # fmt: skip
+V4 = {"avx512f", "avx512dq", "avx512cd", "avx512bw", "avx512vl"}
+
+
+@pytest.mark.skipif("linux-x86_64" not in shipped.place().name, reason="Linux lists what the processor has")
+def test_the_level_is_that_of_the_processor(choose):
+    choose("ready")
+    flags = set(next(each for each in CPUINFO.read_text().splitlines() if each.startswith("flags")).split())
+    has = {"v4": flags >= V3 | V4, "v3": flags >= V3, "v1": True}
+    assert shipped.levels() == tuple(level for level in LEVELS if has[level])
+
+
+TOOLS = PROJECT / "out" / "kernels" / ("Scripts" if os.name == "nt" else "bin") / "python"
+"""What `make kernels` has made, with numba and Zig."""
+
+
+def make_toy(of, folder, spoil=""):
+    """Libraries of a small kernel of lanes."""
+    code = f"""
+import sys, make_kernels as make
+from pathlib import Path
+from tests.dynamics import toy_lanes
+make.SETS = {{"toy": toy_lanes.{of}}}
+{spoil}
+make.main(Path(sys.argv[1]))
+"""
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(map(str, (PROJECT / "scripts", PROJECT)))}
+    command = [TOOLS, "-c", code, folder]
+    return subprocess.run(command, cwd=PROJECT, env=environment, capture_output=True, text=True)
+
+
+@pytest.mark.kernels
+@pytest.mark.skipif(not TOOLS.exists(), reason="needs the tools of `make kernels`")
+class TestLanes:
+    def test_levels_give_the_bits_of_python(self, choose, monkeypatch, tmp_path):
+        done = make_toy("TOY", tmp_path)  # which sees to vectors in all levels, and to no sum fused with a product
+        assert done.returncode == 0, done.stderr
+        monkeypatch.setattr(shipped, "READY_FOLDER", tmp_path)
+        choose()
+        start = RNG.uniform(0.01, 1.0, 9 * toy_lanes.W)
+
+        def bits(run):
+            memory, moved = start.copy(), np.zeros(toy_lanes.W, int)
+            run(memory, moved, 500)
+            return memory.tobytes(), moved.tobytes()
+
+        expected = bits(ways.in_python(toy_lanes.TOY))
+        assert expected != bits(lambda *_: None)
+        for level in shipped.levels():
+            assert bits(ways.as_shipped(toy_lanes.TOY, level)) == expected
+
+    def test_a_loop_without_vectors_is_refused(self, tmp_path):
+        assert "would have no vectors at level v1" in make_toy("SERIAL", tmp_path).stderr
+
+    def test_sums_fused_with_products_are_refused(self, tmp_path):
+        contract = ".replace('fmul', 'fmul contract').replace('fadd', 'fadd contract')"
+        fused = f"make.called_by_address = lambda text, imported: text{contract}"
+        assert "would round a product and a sum once" in make_toy("TOY", tmp_path, fused).stderr
+
+    def test_fast_arithmetic_is_refused(self, tmp_path):
+        fast = "made = make.versions; make.versions = lambda *of: {"
+        fast += "level: text.replace('fmul ', 'fmul nnan ') for level, text in made(*of).items()}"
+        assert "arithmetic is not that of IEEE 754" in make_toy("TOY", tmp_path, fast).stderr
+
+
+class Recorder:
+    """The functions of C of a library, whose results are kept by the bits of their arguments."""
+
+    def __init__(self, library):
+        self.results, self.alive = {}, []
+        c = ctypes.CDLL("ucrtbase" if sys.platform == "win32" else None)
+        for name, types in FUNCTIONS.items():
+            if "ptr" not in types:
+                count = types.count("double") - 1
+                function = ctypes.CFUNCTYPE(ctypes.c_double, *[ctypes.c_double] * count)
+                self.alive.append(function(functools.partial(self.call, name, function((name, c)))))
+                address = ctypes.cast(self.alive[-1], ctypes.c_void_p).value
+                ctypes.c_void_p.in_dll(library, symbol(name)).value = address
+
+    def call(self, name, function, *numbers):
+        result = function(*numbers)
+        key = struct.pack(f"<{len(numbers)}d", *numbers).hex()
+        self.results.setdefault(name, {})[key] = struct.pack("<d", result).hex()
+        return result
+
+
+MEMORY64 = ["--experimental-wasm-memory64"]
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="no node here")
+def test_a_browser_computes_the_same_bits(choose, monkeypatch, tmp_path):
+    choose("ready")
+    recorder, calls, base = Recorder(shipped.loaded()), [], 2**24
+
+    def call(entry, kernel, arguments):
+        """Also by wasm, where addresses are those of an image of the arrays."""
+        whole, real, places = [], [], []
+        shipped._pack(kernel.arguments, arguments, whole, real, places)
+        arrays = [each for each in leaves(arguments) if isinstance(each, np.ndarray)]
+        at = np.cumsum([base, *(each.nbytes for each in arrays)])
+        image = b"".join(each.tobytes() for each in arrays)
+        rows = [np.array(whole, np.int64), np.array(real), at[:-1].astype(np.int64)]
+        starts = [int(at[-1]) + sum(each.nbytes for each in rows[:k]) for k in range(3)]
+        image = base64.b64encode(image + b"".join(each.tobytes() for each in rows)).decode()
+        usual(entry, kernel, arguments)
+        given = {
+            "entry": symbol(kernel.name),
+            "rows": starts,
+            "base": base,
+            "image": image,
+            "results": recorder.results,
+        }
+        (tmp_path / "call.json").write_text(json.dumps(given), encoding="utf-8")
+        words = [
+            "node",
+            *MEMORY64,
+            Path(__file__).with_name("run_wasm.mjs"),
+            shipped.READY_FOLDER / "wasm.wasm",
+            "call.json",
+        ]
+        done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        after = b"".join(each.tobytes() for each in arrays)
+        assert base64.b64decode(done.stdout)[: len(after)] == after
+        calls.append(kernel.name)
+
+    usual = shipped.call
+    monkeypatch.setattr(shipped, "call", call)
+    structure = Structure(load_structure(EXAMPLES / "frame.yaml"))
+    follow(structure.model("nonlinear"), SHAKING)
+    follow(structure.model("linear2"), BOTH)
+    exact_many(
+        structure.equivalence, parse_pulse("sine:0.4g:1s"), np.array([3.0]), np.array([1.0]), kappa=2, gravity=9.8
+    )
+    assert calls == ["histories", "histories", "pulses"] and recorder.results.keys() >= {"sin", "expm1"}
+
+
+def leaves(values):
+    """What tuples within tuples hold."""
+    for each in values:
+        if isinstance(each, tuple):
+            yield from leaves(each)
+        else:
+            yield each
 
 
 class TestLibrary:

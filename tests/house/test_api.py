@@ -174,8 +174,8 @@ FRAMES = {
     ),
     "respond_each": (
         "structure; model; motion; scale; polarity; restitution; pga_g [g]; pgv [m/s]; outcome; overturned; unknown; "
-        "peak_ratio; peak_rotation [rad]; peak_displacement [m]; impact_count; uplift_time [s]; overturning_time [s]; "
-        "end_time [s]; known_to [s]; peak_lower_bound; opening; slip [m]",
+        "peak_ratio; peak_rotation [rad]; peak_rate [rad/s]; peak_displacement [m]; impact_count; uplift_time [s]; "
+        "overturning_time [s]; end_time [s]; known_to [s]; peak_lower_bound; opening; slip [m]",
         {"peak_ratio": lambda _, data: [data[model]["peak_ratio"][0][0][0] for model in MODELS]},
     ),
     "respond_around": (
@@ -188,7 +188,8 @@ FRAMES = {
         {"peak_ratio": lambda _, data: [each["peak_ratio"] for each in data["responses"].values()]},
     ),
     "spectrum": (
-        "structure; size [s]; scale; R [m]; motion; peak_ratio; overturned; unknown; peak_lower_bound",
+        "structure; size [s]; scale; R [m]; motion; peak_ratio; peak_rate [rad/s]; overturned; unknown; "
+        "peak_lower_bound",
         {"scale": lambda _, data: data["spectra"][0]["scale"] * 2,
          "unknown": lambda _, data: np.ravel(data["spectra"][0]["every_unknown"])},
     ),

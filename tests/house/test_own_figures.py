@@ -195,7 +195,7 @@ FLAT = Figure().subplots()
 )
 def test_what_cannot_be_is_refused_before_anything_is_drawn(given, said):
     with pytest.raises(rk.InputError, match=said):
-        asked("one spectrum").plot(**given)
+        asked("margin").plot(**given)
     assert not FLAT.lines and not POLAR.lines and style.given() is None
 
 
@@ -234,11 +234,12 @@ def test_a_plot_that_makes_its_own_figure_is_not_lost():
 
 def test_threads_draw_each_in_its_own():
     answer = asked("one spectrum")
-    every = [Figure().subplots() for _ in range(6)]
+    every = [Figure() for _ in range(6)]
     with ThreadPoolExecutor(3) as pool:
-        alone = list(pool.map(lambda axes: answer.plot(ax=axes) if axes else answer.plot(), [*every, None]))[-1]
-    for axes in every:
-        np.testing.assert_equal(lines(axes), lines(alone.axes[0]))
+        alone = list(pool.map(lambda mine: answer.plot(figure=mine) if mine else answer.plot(), [*every, None]))[-1]
+    for figure in every:
+        for own, usual in zip(figure.axes, alone.axes, strict=True):
+            np.testing.assert_equal(lines(own), lines(usual))
 
 
 @pytest.mark.parametrize(
@@ -257,9 +258,9 @@ def test_words_are_broken_into_lines(text, expected):
 
 
 def test_names_with_dollars_are_broken_as_they_are():
-    axes = Figure((2.0, 2.0)).subplots()
+    figure = Figure((2.0, 4.0))
     name = "costs $5 and $6 " * 4
-    rk.spectrum(rk.Block(width=0.7, height=2.8, name=name), PULSE, count=3).plot(ax=axes)
-    drawn(axes.figure)
-    words = re.sub(r"\s+", " ", axes.get_legend().get_texts()[0].get_text())
+    rk.spectrum(rk.Block(width=0.7, height=2.8, name=name), PULSE, count=3).plot(figure=figure)
+    drawn(figure)
+    words = re.sub(r"\s+", " ", figure.legends[0].get_texts()[0].get_text())
     assert r"costs \$5 and \$6" in words

@@ -163,7 +163,8 @@ class TestAzimuths:
         azimuths, no, none = np.arange(0.0, 360.0, 60.0), np.zeros(6, dtype=bool), np.full(6, nan)
         many = Outcome(
             still_rocking=no, failed=no, fell_to=np.eye(6)[0], peak_positive=none, peak_negative=none, opening=none,
-            overturning_time=none, impact_count=np.zeros(6), end_time=none, warned=none, by_blocks=no, off_edge=no,
+            peak_rate_positive=none, peak_rate_negative=none, overturning_time=none, impact_count=np.zeros(6),
+            end_time=none, warned=none, by_blocks=no, off_edge=no,
             unknown=np.array([0, 1, 1, 0, 0, 0], dtype=bool),
             peak_ratio=np.array([nan, 0.9, 0.1, 0.4, 0.3, 0.2]), known_to=np.array([nan, 1.0, 2.0, nan, nan, nan]),
             lower_bound=np.array([nan, 0.5, 0.1, nan, 0.2, nan]), uplift_time=np.ones(6), slip=np.zeros(6),

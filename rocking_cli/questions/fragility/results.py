@@ -468,6 +468,7 @@ def _of_runs(plan: Plan, rows: RunRows, measures: Sequence[str], study: Mapping[
         "peak_ratio": np.where(fell_to != 0, np.inf, rows.peak_ratio).tolist(),
         "peak_positive [rad]": rows.peak_positive.tolist(),
         "peak_negative [rad]": rows.peak_negative.tolist(),
+        "peak_rate [rad/s]": np.where(fell_to != 0, np.inf, rows.peak_rate).tolist(),
         "uplift_time [s]": rows.uplift_time.tolist(),
         "overturning_time [s]": rows.overturning_time.tolist(),
         "known_to [s]": rows.known_to.tolist(),

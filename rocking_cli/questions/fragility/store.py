@@ -65,6 +65,8 @@ class RunRows:
         fields cover the time until `known_to`.
     peak_positive, peak_negative : ndarray
         Peak rotation in either direction [rad]; NaN in the direction in which the run overturned.
+    peak_rate : ndarray
+        Peak angular velocity [rad/s]; NaN if the run overturned, and in a store made before it was computed.
     uplift_time, overturning_time : ndarray
         Time of the first uplift, and time of passing the critical rotation for good [s]; NaN if never.
     known_to : ndarray
@@ -91,6 +93,7 @@ class RunRows:
     peak_ratio: Annotated[Reals, "peak rotation over the critical rotation"]
     peak_positive: Annotated[Reals, "rad"]
     peak_negative: Annotated[Reals, "rad"]
+    peak_rate: Annotated[Reals, "rad/s"]
     uplift_time: Annotated[Reals, "s"]
     overturning_time: Annotated[Reals, "s"]
     known_to: Annotated[Reals, "s"]
@@ -325,6 +328,7 @@ class Store:
         except FileNotFoundError:
             return NO_RUNS
         try:
+            columns.setdefault("peak_rate", np.full(columns["run"].shape, np.nan))  # of a store made before
             study, rows = str(columns["study"]), RunRows(**{name: columns[name] for name in COLUMNS})
             first, stop = self.ends(k)
             sizes = {each.shape for each in columns.values() if each.ndim}

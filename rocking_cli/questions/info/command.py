@@ -17,7 +17,7 @@ from rocking_cli.cli.help import Command, as_json
 from rocking_cli.core.hung.ties import Laws
 from rocking_cli.core.registry import Registry
 from rocking_cli.dynamics import ways
-from rocking_cli.errors import RockingError
+from rocking_cli.errors import InputError, RockingError
 from rocking_cli.excitation.pulses import PulseShapes
 from rocking_cli.excitation.records.formats import Readers
 from rocking_cli.plugins.registry import Plugins
@@ -80,8 +80,12 @@ class Installation:
     plugins : mapping of str to tuple of Plugin
         Plugins by kind: `mechanisms`, `records`, `pulses`, `measures` and `codes`; `laws` only if other packages
         provide some.
+    kernels : str or None
+        How kernels are run: by machine code at level `v4`, `v3` or `v1` of processors or `scalar`, or by `python`;
+        None if the variable of the environment asks for what is not here.
     slow_kernels : str or None
-        Why Python runs the kernels, which takes some sixty times longer; None if the shipped machine code is used.
+        Why Python runs the kernels, which takes some sixty times longer, or why nothing does; None if the shipped
+        machine code is used.
     processors, threads : int
         Number of processors of the machine, and of threads that this process may use.
     environment : mapping of str to str
@@ -94,6 +98,7 @@ class Installation:
     libraries: Mapping[str, str | None]
     extras: Mapping[str, Mapping[str, str | None]]
     plugins: Mapping[str, tuple[Plugin, ...]]
+    kernels: str | None
     slow_kernels: str | None
     processors: int
     threads: int
@@ -117,18 +122,24 @@ def examine() -> Installation:
             "codes": _plugins(Codes()),
             **({"laws": laws} if (laws := _plugins(Laws())) else {}),
         },
-        _why_slow(),
+        *_kernels(),
         os.cpu_count() or 1,
         len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1,
         {name: value for name, value in sorted(os.environ.items()) if name.startswith("ROCKING_")},
     )
 
 
-def _why_slow() -> str | None:
+def _kernels() -> tuple[str | None, str | None]:
+    """Return how kernels are run, and why not by the shipped machine code."""
     if os.environ.get(ways.KERNELS_VARIABLE) == ways.PYTHON:
-        return f"{ways.KERNELS_VARIABLE} is {ways.PYTHON}"
+        return ways.PYTHON, f"{ways.KERNELS_VARIABLE} is {ways.PYTHON}"
     fault = ways.fault_of_shipped()
-    return None if fault is None else str(fault)
+    if fault is not None:
+        return ways.PYTHON, str(fault)
+    try:
+        return ways.way(), None
+    except InputError as error:
+        return None, str(error)
 
 
 def _packages() -> tuple[dict[str, str | None], dict[str, dict[str, str | None]]]:
@@ -164,6 +175,7 @@ def _broken(installed: Plugins[Any], name: str) -> str | None:
 def view(found: Installation) -> View:
     """Show what is installed, for users and for fault reports."""
     slow, environment = found.slow_kernels, found.environment
+    without = "in Python, some sixty times slower" if found.kernels else "none"
     rows = [
         [OWN_PACKAGE, found.version],
         ["Python", found.python],
@@ -172,7 +184,7 @@ def view(found: Installation) -> View:
         *([name, version or "missing"] for name, version in found.libraries.items()),
         *(_extra(name, packages) for name, packages in found.extras.items()),
         *(row for kind, plugins in found.plugins.items() for row in _plugin_rows(kind, plugins)),
-        ["kernels", "shipped machine code" if slow is None else f"in Python, some sixty times slower: {slow}"],
+        ["kernels", f"shipped machine code, {found.kernels}" if slow is None else f"{without}: {slow}"],
     ]
     if environment:
         rows.append(["environment", " ".join(f"{name}={value}" for name, value in environment.items())])

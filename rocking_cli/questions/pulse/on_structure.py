@@ -292,6 +292,7 @@ def _columns(answers: Mapping[str, Answer], *, unknown: bool = False) -> list[Co
         only_shown(least, bound, rounded(5)),
         Column("peak_positive", value("peak_positive"), "deg", "peak rotation, clockwise", in_degrees),
         Column("peak_negative", value("peak_negative"), "deg", "peak rotation, anticlockwise", in_degrees),
+        Column("peak_rate", value("peak_rate"), "rad/s", "peak angular velocity", rounded(4)),
         Column("first_excursion", exactly("first_excursion"), "", "first excursion", rounded(5)),
         Column("first_rebound", exactly("first_rebound"), "", "first rebound", rounded(5)),
         Column("uplift_time", value("uplift_time"), "s", "uplift", rounded(5)),

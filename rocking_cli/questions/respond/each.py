@@ -211,6 +211,7 @@ def _outcome_columns(grid: RunGrid, outcome: Outcomes) -> dict[str, Any]:
     peaks = {
         "peak_ratio": outcome.peak_ratio,
         "peak_rotation [rad]": np.maximum(outcome.peak_positive, outcome.peak_negative),
+        "peak_rate [rad/s]": outcome.peak_rate,
         "peak_displacement [m]": np.maximum(np.stack(list(_displacements(grid, outcome))), outcome.slip),
     }
     values: dict[str, Any] = {

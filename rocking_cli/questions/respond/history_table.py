@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,11 +12,13 @@ from rocking_cli.arrays import Reals
 from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import ModelName
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
-from rocking_cli.io.tables import Columns, stacked
 from rocking_cli.structure import Structure
 from rocking_cli.studies.contact import Contacts
 from rocking_cli.studies.movements import Watched
 from rocking_cli.studies.response import Response
+
+if TYPE_CHECKING:
+    from rocking_cli.io.tables import Columns
 
 GROUND = ("a_g", "v_g")
 """Columns of a history that are those of the ground."""
@@ -35,6 +38,8 @@ def wide(response: Response, structure: Structure) -> Iterator[dict[str, Reals]]
 
 def long(response: Response, structure: Structure) -> Columns:
     """Return the histories with a row for each sample of each, and what it is of."""
+    from rocking_cli.io.tables import stacked
+
     first, fit, contacts = response.first, response.fit, Contacts(structure.mechanism)
     under: list[tuple[dict[str, int], GroundMotion | None, Mapping[ModelName, History]]] = [({}, first, response)]
     if first is not None and len(response.runs) > 1:
@@ -71,6 +76,13 @@ def of_each_block(response: Response, structure: Structure) -> Iterator[Columns]
             **polarity, "t [s]": np.repeat(run.time, len(names)), "block": np.tile(names, run.time.size),
             "x [m]": z.real, "z [m]": z.imag, "rotation [rad]": np.stack(turns, axis=1).ravel(),
         }  # fmt: skip
+
+
+def long_of_each_block(response: Response, structure: Structure) -> Columns:
+    """Return the motion of each block as one table."""
+    from rocking_cli.io.tables import stacked
+
+    return stacked(of_each_block(response, structure))
 
 
 def impacts(response: Response) -> Columns:

@@ -16,7 +16,6 @@ from rocking_cli.dynamics.history import History
 from rocking_cli.dynamics.model import MODELS, ModelName
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import STANDARD_GRAVITY
-from rocking_cli.io.tables import stacked
 from rocking_cli.processing.reading import Scaled
 from rocking_cli.questions.respond.asked import NOT_OF_BLOCKS, WITH_BLOCKS, RespondAsked
 from rocking_cli.questions.respond.history_table import GROUND
@@ -145,7 +144,7 @@ class _Answering:
         doubts, linear = doubts_of(structure.mechanism), asked.model is not None
         shown = view(response, conditions, title, doubts, impacts=asked.impacts, linear=linear)
         wide = history_table.of_each_block if asked.each_block else history_table.wide
-        long = (lambda *given: stacked(wide(*given))) if asked.each_block else history_table.long
+        long = history_table.long_of_each_block if asked.each_block else history_table.long
         under = ("pulse_alone",) * (asked.with_pulse is not None) + ("polarity",) * (len(conditions.signs) > 1)
         answer = ResponseAnswer(
             "response", response, shown, partial(long, response, structure), partial(self._figure, response, title),

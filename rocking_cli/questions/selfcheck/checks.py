@@ -279,10 +279,10 @@ def kernels(quick: bool) -> float:
     if fault is not None:
         raise NotRun(f"{fault}; Python computes histories") from fault
     computed = []
-    for engine in (ways.MACHINE_CODE, ways.PYTHON):
+    for engine in ways.usable():
         with ways.forced(engine):
             computed.append(list(_computed(quick)))
-    return sum(different_values(*pair) for pair in zip(*computed, strict=True))
+    return sum(different_values(one, other) for one, *rest in zip(*computed, strict=True) for other in rest)
 
 
 def _computed(quick: bool) -> Iterator[NDArray[Any]]:

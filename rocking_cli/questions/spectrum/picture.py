@@ -1,4 +1,4 @@
-"""Plot of rocking spectra: the peak rotation against the size, and the share of the motions that overturn."""
+"""Plot of rocking spectra: peak rotation and angular velocity against the size, and the share that overturns."""
 
 from __future__ import annotations
 
@@ -33,8 +33,9 @@ MARK_ROW_HEIGHT = 0.06  # share of the height of the peaks, for a row of marks o
 def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title: str) -> Figure:
     """Plot spectra against sizes in metres, with given structures marked; for several motions also overturned shares.
 
-    Each computed size has a mark. Open marks above the peaks mean unknown outcomes; in the panel of shares, a hatched
-    band includes them. Of the smallest sizes, those at which all motions overturn every structure are cut to a few.
+    Each computed size has a mark, angular velocities only where the median neither overturns nor is unknown. Open marks
+    above the peaks mean unknown outcomes; in the panel of shares, a hatched band includes them. Of the smallest sizes,
+    those at which all motions overturn every structure are cut to a few.
 
     Parameters
     ----------
@@ -48,7 +49,8 @@ def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title:
     """
     many = len(spectra[0].peak_ratio) > 1
     low, high = min(fractiles), max(fractiles)
-    figure, every = style.panels(6.4 if many else 4.8, 1 + many, sharex=True, height_ratios=[2.4, 1][: 1 + many])
+    ratios = [2.4, 1.2, 1][: 2 + many]
+    figure, every = style.panels(7.9 if many else 6.4, 2 + many, sharex=True, height_ratios=ratios)
     panels = every[:, 0]
     style.heading(panels[0], title)
     medians = [each.fractile(0.5) for each in spectra]
@@ -69,8 +71,9 @@ def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title:
         if shaded:
             _draw_spread(panels[0], each, size, k, (low, high), top, every=len(spectra) == 1)
         if many:
-            _draw_doubt(panels[1], each, size, k)
-            _draw_line(panels[1], each, size, k, each.share)
+            _draw_doubt(panels[2], each, size, k)
+            _draw_line(panels[2], each, size, k, each.share)
+        _draw_line(panels[1], each, size, k, each.fractile(0.5, each.rate_over_p))
         heights = {
             known: top * (1 + MARK_ROW_HEIGHT * (place + 0.5)) for place, (of, known) in enumerate(rows) if of == k
         }
@@ -81,11 +84,12 @@ def draw_spectra(spectra: Sequence[Spectrum], fractiles: Sequence[float], title:
                 axes.axvline(size[each.given], color=style.INK, linewidth=style.CURVE, linestyle=":", zorder=1)
     _scale_peaks(panels[0], top, [known for _, known in rows])
     if many:
-        panels[1].set_ylim(-0.04, 1.04)
-        style.in_percent(panels[1].yaxis)
-        panels[1].set_ylabel("share that overturns", fontsize=style.LABEL)
-    what = r"median peak $\phi/\phi_{cr}$" if many else r"peak $\phi/\phi_{cr}$"
-    panels[0].set_ylabel(what, fontsize=style.LABEL)
+        panels[2].set_ylim(-0.04, 1.04)
+        style.in_percent(panels[2].yaxis)
+        panels[2].set_ylabel("share that overturns", fontsize=style.LABEL)
+    panels[1].set_ylim(bottom=0.0)
+    for axes, what in zip(panels, (r"peak $\phi/\phi_{cr}$", r"peak $\dot\phi/p$ [rad]"), strict=False):
+        axes.set_ylabel(f"median {what}" if many else what, fontsize=style.LABEL)
     ends = _ends(spectra, sizes)
     for axes in panels:
         axes.set_xscale("log")

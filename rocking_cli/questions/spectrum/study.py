@@ -1,4 +1,4 @@
-"""Rocking response spectra: peak rotation under ground motions as a function of the size of a structure."""
+"""Rocking response spectra: peak rotation and angular velocity under ground motions over the size of a structure."""
 
 from __future__ import annotations
 
@@ -169,6 +169,8 @@ class Spectrum:
     peak_ratio : ndarray, shape (m, n)
         Peak rotation over the critical one under each of m motions: 0 without uplift, inf if the structure overturns or
         the outcome is unknown, NaN if the motion could not be simulated.
+    peak_rate : ndarray, shape (m, n)
+        Peak angular velocity under each motion [rad/s]: 0, inf and NaN as for `peak_ratio`.
     lower_bound : ndarray, shape (m, n), or nan
         Lower bound of the peak ratio if the outcome is unknown because a joint opens or slides that the model keeps
         closed; NaN if the outcome is known.
@@ -177,6 +179,7 @@ class Spectrum:
     shape: SpectrumShape
     scales: Reals
     peak_ratio: Reals
+    peak_rate: Reals
     lower_bound: Reals | float = nan
 
     @property
@@ -243,12 +246,17 @@ class Spectrum:
     def _share(self, counts: Integers) -> Reals:
         return np.where(self.followed > 0, counts / np.maximum(self.followed, 1), np.nan)
 
-    def fractile(self, q: float) -> Reals:
-        """Return the q-fractile of the peak ratio, shape (n,); unknown outcomes count as overturning.
+    @property
+    def rate_over_p(self) -> Reals:
+        """Peak angular velocity over p, shape (m, n) [rad]: the ordinate of the spectrum of angular velocity."""
+        return self.peak_rate * self.periods / (2 * pi)
+
+    def fractile(self, q: float, of: Reals | None = None) -> Reals:
+        """Return the q-fractile of the peak ratio, or `of` other peaks; unknown outcomes count as overturning.
 
         It is NaN at sizes with too few motions, except for the median.
         """
-        peaks = fractile(self.peak_ratio, q)
+        peaks = fractile(self.peak_ratio if of is None else of, q)
         return peaks if q == 0.5 else np.where(self.followed < MIN_MOTIONS, np.nan, peaks)
 
     def fractile_overturns(self, q: float) -> Bools:
@@ -305,14 +313,16 @@ def spectra(
     return results
 
 
-def _worst(found: Outcomes) -> tuple[Reals, Reals]:
-    """Return the peak ratios under the worse polarity (axis 1 of the outcomes), and lower bounds of unknown ones."""
-    peak = np.where(found.fell, inf, np.where(found.unknown, 0.0, found.peak_ratio))
-    peak = np.where(found.failed, nan, peak).max(axis=1)
+def _worst(found: Outcomes) -> tuple[Reals, Reals, Reals]:
+    """Return peak ratios and rates, each of the worse polarity (axis 1 of the outcomes), and bounds of unknown ones."""
+    peak, rate = (
+        np.where(found.failed, nan, np.where(found.fell, inf, np.where(found.unknown, 0.0, each))).max(axis=1)
+        for each in (found.peak_ratio, found.peak_rate)
+    )
     unknown = found.unknown.any(axis=1) & np.isfinite(peak)
     least = np.where(found.unknown, found.lower_bound, found.peak_ratio)
     bound = np.max(least, axis=1, initial=0.0, where=~(found.fell | found.failed))
-    return np.where(unknown, inf, peak), np.where(unknown, bound, nan)
+    return np.where(unknown, inf, peak), np.where(unknown, inf, rate), np.where(unknown, bound, nan)
 
 
 def _of_one_shape(

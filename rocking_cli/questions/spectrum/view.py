@@ -118,13 +118,13 @@ def table(results: ShownSpectra) -> Columns:
     return stacked(
         _sizes(results, each)
         | {
-            "motion": under.motion.name, "peak_ratio": peaks,
+            "motion": under.motion.name, "peak_ratio": peaks, "peak_rate [rad/s]": rates,
             "overturned": np.where(unknown | np.isnan(peaks), np.nan, np.isinf(peaks)),
             "unknown": unknown if each.checked else np.nan, "peak_lower_bound": least,
         }
         for each in results.spectra
-        for under, peaks, unknown, least in zip(
-            results.motions, each.peak_ratio, each.unknown,
+        for under, peaks, rates, unknown, least in zip(
+            results.motions, each.peak_ratio, each.peak_rate, each.unknown,
             np.broadcast_to(each.lower_bound, each.peak_ratio.shape), strict=True,
         )
     )  # fmt: skip
@@ -135,7 +135,8 @@ def fractile_table(results: ShownSpectra) -> Columns:
     return stacked(
         _sizes(results, each)
         | {
-            "fractile": q, "peak_ratio": each.fractile(q), "motions": each.followed, "overturned": each.share,
+            "fractile": q, "peak_ratio": each.fractile(q), "peak_rate [rad/s]": each.fractile(q, each.peak_rate),
+            "motions": each.followed, "overturned": each.share,
             "unknown": each.share_at_most - each.share if each.checked else np.nan,
         }
         for each in results.spectra
@@ -177,7 +178,9 @@ def _data(results: ShownSpectra, each: Spectrum) -> dict[str, Any]:
         "overturned": each.overturned.tolist(),
         "unknown": each.doubtful.tolist() if each.checked else None,
         "peaks": [_finite(each.fractile(q)) for q in results.fractiles],
+        "rates": [_finite(each.fractile(q, each.peak_rate)) for q in results.fractiles],
         "every_peak_ratio": [_finite(peaks) for peaks in each.peak_ratio],
+        "every_peak_rate": [_finite(rates) for rates in each.peak_rate],
         "every_overturned": [
             [None if hidden else peak == np.inf for peak, hidden in zip(*row, strict=True)]
             for row in zip(each.peak_ratio.tolist(), each.unknown.tolist(), strict=True)
@@ -201,6 +204,10 @@ def _peak(value: float, least: float = np.nan) -> str:
     if value != value:
         return ABSENT
     return OVERTURNS if np.isinf(value) else f"{value:.3g}"
+
+
+def _rate(value: float) -> str:
+    return f"{value:.3g}" if np.isfinite(value) else ABSENT
 
 
 def _curve(results: ShownSpectra, each: Spectrum) -> Iterator[Table | str]:
@@ -237,6 +244,7 @@ def _columns(results: ShownSpectra, each: Spectrum) -> Iterator[Column[int]]:
     if results.one:
         least = np.broadcast_to(each.lower_bound, each.peak_ratio.shape)[0]
         yield only_shown("peak\nphi/phi_cr", lambda k: _peak(each.peak_ratio[0, k], least[k]))
+        yield only_shown("peak\nphi_dot/p\n[rad]", lambda k: _rate(each.rate_over_p[0, k]), rank=1)
         return
     for q in results.fractiles:
         falls, peaks = each.fractile_overturns(q), [_peak(value) for value in each.fractile(q)]
@@ -244,6 +252,8 @@ def _columns(results: ShownSpectra, each: Spectrum) -> Iterator[Column[int]]:
         cells = [UNKNOWN if peak == OVERTURNS and not known else peak for peak, known in zip(peaks, falls, strict=True)]
         hidden = ASIDE * (set(cells) == {ABSENT})
         yield only_shown("median" if q == 0.5 else f"{100 * q:g} %", cells.__getitem__, rank=hidden or int(q != 0.5))
+    rates = each.fractile(0.5, each.rate_over_p)
+    yield only_shown("median\nphi_dot/p\n[rad]", lambda k: _rate(rates[k]), rank=2)
     yield only_shown("overturned", lambda k: f"{each.overturned[k]} of {each.followed[k]}")
     if each.unknown.any():
         yield only_shown(UNKNOWN, each.doubtful.item)

@@ -21,7 +21,7 @@ from rocking_cli.core import Mechanism
 from rocking_cli.dynamics.batch import Runs
 from rocking_cli.dynamics.history import BlockPeaks, History, contact_lost
 from rocking_cli.dynamics.model import Model
-from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, Outcome, Outcomes
+from rocking_cli.dynamics.outcome import OUTCOME_FIELDS, ROTATIONS, Outcome, Outcomes
 from rocking_cli.dynamics.parallel import MAX_PROCESSES, in_processes
 from rocking_cli.dynamics.sliding import Slid
 from rocking_cli.errors import KeptWarning, SolverError, warn
@@ -88,6 +88,8 @@ def outcome_of(moved: BlockMotion, free: FreeBlocks, phi_cr: Sequence[float]) ->
     of_mechanism = phi[-1] if free.leads else 0.0  # zero where a block falls beside the mechanism
     way = of_mechanism or moved.moved[-1, _place(free, moved.block), 0]
     peaks = [float(np.max(sign * phi, initial=0.0)) for sign in (1, -1)]
+    turning = free.rotation_rate(moved.moved, moved.rates)
+    rates = [float(np.max(np.abs(turning), where=sign * phi > 0, initial=0.0)) for sign in (1, -1)]
     fell = np.isfinite(moved.collapsed)
     moving = np.abs(phi) > MOVED * np.where(phi < 0, phi_cr[1], phi_cr[0])
     uplifts = bool(moving.any()) or bool(fell)
@@ -102,9 +104,11 @@ def outcome_of(moved: BlockMotion, free: FreeBlocks, phi_cr: Sequence[float]) ->
         "peak_positive": nan if fell_to > 0 else peaks[0] * uplifts,
         "peak_negative": nan if fell_to < 0 else peaks[1] * uplifts,
         "peak_ratio": nan if fell else ratio * uplifts,
+        "peak_rate_positive": nan if fell_to > 0 else rates[0] * uplifts,
+        "peak_rate_negative": nan if fell_to < 0 else rates[1] * uplifts,
         "overturning_time": moved.collapsed,
         "uplift_time": float(moved.time[moving.argmax()]) if moving.any() else nan,
-        "impact_count": len(impacts_of(moved.time, phi, free.rotation_rate(moved.moved, moved.rates), moving)),
+        "impact_count": len(impacts_of(moved.time, phi, turning, moving)),
         "end_time": nan if moved.failed else end,
         "unknown": bool(moved.failed),
         "known_to": end if moved.failed else nan,
@@ -247,7 +251,7 @@ class Blocks(Engine):
                 progress(1)
         rows = [known[key] for key in keys]
         fields = {name: np.array([row[name] for row in rows]) for name in OUTCOME_FIELDS}
-        for name in ("peak_positive", "peak_negative", "slip"):
+        for name in (*ROTATIONS, "slip"):
             fields[name] = fields[name] * runs.slender
         return Outcome(**fields)
 

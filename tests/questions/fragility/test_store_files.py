@@ -202,6 +202,20 @@ def test_a_writer_whose_store_another_process_has_put_aside_stops(sound, place):
         writer.add(rows)
 
 
+def test_a_store_made_before_peak_rates_were_computed_is_read_and_gone_on_with(sound, place):
+    for file in place.glob("runs-*.npz"):
+        with np.load(file) as chunk:
+            kept = {name: chunk[name] for name in chunk.files if name != "peak_rate"}
+        np.savez(file, **kept)
+    old, new = Store.reading(place), Store.reading(sound.store)
+    first, whole = next(old.rows(0, RUNS)), next(new.rows(0, RUNS))
+    assert np.isnan(first.peak_rate).all() and (whole.peak_rate[whole.uplifts & ~whole.overturned] > 0).all()
+    np.testing.assert_array_equal(first.peak_ratio, whole.peak_ratio)
+    (place / "runs-000001.npz").unlink()
+    assert shown(command("fragility", sound.study, "--store", place, "--json", code=0).stdout) == sound.shown
+    assert np.isfinite(next(Store.reading(place).rows(0, RUNS)).peak_rate).any()
+
+
 def test_a_reader_whose_store_is_put_aside_between_two_readings_stops(sound, place):
     """Else the shares would be of all runs, and what is read after them of none."""
     reader = Store.reading(place)

@@ -233,18 +233,21 @@ class TestSpectrum:
         }
         columns = [np.array(each) for each in zip(*[side for pair in pairs.values() for side in pair], strict=True)]
         fields = dict(zip(("fell_to", "unknown", "failed", "peak_ratio", "lower_bound"), columns, strict=True))
-        peak, bound = _worst(made(**fields).by_field(lambda each: each.reshape(4, 2, 1)))
+        fields |= {"peak_rate_positive": 2 * columns[3], "peak_rate_negative": columns[3]}
+        peak, rate, bound = _worst(made(**fields).by_field(lambda each: each.reshape(4, 2, 1)))
+        np.testing.assert_array_equal(rate, 2 * peak)
         np.testing.assert_array_equal(peak[:, 0], [np.inf, np.inf, np.nan, 0.5])
         np.testing.assert_array_equal(bound[:, 0], [0.5, np.nan, np.nan, np.nan])
 
     def test_a_fractile_overturns_only_if_it_does_whatever_is_unknown(self):
         peaks = np.array([[0.1, 0.1], [np.inf, np.inf], [np.inf, np.inf]])
         bounds = np.array([[np.nan, np.nan], [0.2, np.nan], [np.nan, np.nan]])
-        found = Spectrum(blocks_of(0.2, "linear2"), np.array([1.0, 2.0]), peaks, bounds)
+        found = Spectrum(blocks_of(0.2, "linear2"), np.array([1.0, 2.0]), peaks, peaks, bounds)
         assert found.overturned.tolist() == [1, 2] and found.doubtful.tolist() == [1, 0]
         assert np.isinf(found.fractile(0.5)).all() and found.fractile_overturns(0.5).tolist() == [False, True]
         assert found.share[0] == pytest.approx(1 / 3) and found.share_at_most[0] == pytest.approx(2 / 3)
-        found = replace(found, scales=np.arange(1.0, 4.0), peak_ratio=np.c_[peaks, [0.1, 0.1, 0.3]],
+        peaks = np.c_[peaks, [0.1, 0.1, 0.3]]
+        found = replace(found, scales=np.arange(1.0, 4.0), peak_ratio=peaks, peak_rate=peaks,
                         lower_bound=np.c_[bounds, 3 * [np.nan]])  # fmt: skip
         shown = spectrum_views.ShownSpectra([found], 3 * [Scaled(RECORD, 1.0)], (0.5,), "1")
         median = next(each for each in spectrum_views._columns(shown, found) if each.head == "median")
@@ -264,7 +267,7 @@ class TestSpectrum:
         assert "none of 3 motions is known to overturn it, the outcome of 2 is unknown" in data["verdict"]
         table = next(part for part in view.parts if not isinstance(part, str))
         assert "unknown" in table.columns and any("unknown" in row[2:5] for row in table.rows)
-        above, below = draw_spectra(found, results.fractiles, "").axes
+        above, _, below = draw_spectra(found, results.fractiles, "").axes
         assert "unknown" in [label.get_text() for label in above.get_yticklabels()]
         opened = [
             line for line in above.lines if line.get_markerfacecolor() == style.PAPER and line.get_marker() == "o"

@@ -62,7 +62,7 @@ def test_each_row_is_the_response_that_it_names(answer):
                 assert row.peak_displacement == pytest.approx(moved, rel=1e-12, abs=1e-15)
         else:
             assert row.peak_rotation == row.peak_displacement == np.inf
-    assert {"rad", "m", "m/s", "s", "g"} == set(frame.attrs["units"].values())
+    assert {"rad", "rad/s", "m", "m/s", "s", "g"} == set(frame.attrs["units"].values())
 
 
 def test_what_is_said_is_counted(answer):

@@ -161,7 +161,7 @@ class TestFractiles:
     def test_what_could_not_be_followed_is_left_out(self):
         peaks = np.array([[nan, nan, 0.3], [0.5, nan, inf], [0.1, nan, nan], [0.3, nan, 0.1]])
         assert fractile(peaks, 0.5) == pytest.approx([0.3, nan, 0.3], nan_ok=True)
-        found = Spectrum(blocks_of(0.2, "linear2"), np.array([1.0, 2.0, 3.0]), peaks)
+        found = Spectrum(blocks_of(0.2, "linear2"), np.array([1.0, 2.0, 3.0]), peaks, peaks)
         assert found.followed.tolist() == [3, 0, 3] and found.overturned.tolist() == [0, 0, 1]
         assert found.share == pytest.approx([0, nan, 1 / 3], nan_ok=True)
 
@@ -202,11 +202,13 @@ class TestPicture:
         found = spectra(shapes, np.geomspace(1, 10, 12), [a_record(k) for k in range(4)])
         figure = draw_spectra(found, (0.16, 0.5, 0.84), "title")
         figure.draw_without_rendering()
-        above, below = figure.axes
+        above, rates, below = figure.axes
         assert below.get_xlabel().endswith("R [m]") and above.child_axes[0].get_xlabel().startswith(r"$2\pi/p$")
-        stars = [[line for line in axes.lines if line.get_marker() == "*"] for axes in (above, below)]
+        stars = [[line for line in axes.lines if line.get_marker() == "*"] for axes in (above, rates, below)]
         place = found[0].given
-        for (star,), value in zip(stars, (found[0].fractile(0.5)[place], found[0].share[place]), strict=True):
+        one = found[0]
+        values = one.fractile(0.5)[place], one.fractile(0.5, one.rate_over_p)[place], one.share[place]
+        for (star,), value in zip(stars, values, strict=True):
             assert star.get_xdata()[0] == pytest.approx(np.hypot(0.35, 1.4))
             if np.isfinite(value):
                 assert star.get_ydata()[0] == pytest.approx(value)
@@ -214,20 +216,21 @@ class TestPicture:
         assert any("0.1 rad = 5.73°" in each for each in words)
         assert "overturns" in [label.get_text() for label in above.get_yticklabels()]
 
-    def test_of_one_motion_it_has_one_panel(self, shapes):
+    def test_of_one_motion_it_has_two_panels(self, shapes):
         (found,) = spectra(shapes[1:], np.geomspace(1, 10, 12), [a_record(pga=0.12)])
         figure = draw_spectra([found], (0.5,), "title")
         figure.draw_without_rendering()
-        (axes,) = figure.axes
-        assert axes.get_xlabel() == "half of the diagonal, R [m]"
-        np.testing.assert_allclose(axes.lines[0].get_xdata(), found.scales)
-        line = axes.lines[0].get_ydata()
-        finite = np.isfinite(found.peak_ratio[0])
-        assert (np.isfinite(line) == finite).all() and (line[finite] == found.peak_ratio[0][finite]).all()
+        assert figure.axes[-1].get_xlabel() == "half of the diagonal, R [m]"
+        rates = found.peak_rate[0] / (2 * pi / found.periods)
+        for axes, values in zip(figure.axes, (found.peak_ratio[0], rates), strict=True):
+            np.testing.assert_allclose(axes.lines[0].get_xdata(), found.scales)
+            line, finite = axes.lines[0].get_ydata(), np.isfinite(values)
+            assert finite.any() and (np.isfinite(line) == finite).all()
+            np.testing.assert_allclose(line[finite], values[finite], rtol=1e-12)
 
     def test_every_size_has_one_mark_and_few_of_those_that_overturn_for_certain_are_shown(self):
         (found,) = spectra([shape_of(Structure(Block(**BLOCK)), "linear2")], np.geomspace(0.9, 9, 40), [a_record()])
-        (axes,) = draw_spectra([found], (0.5,), "title").axes
+        axes, _ = draw_spectra([found], (0.5,), "title").axes
         heights = np.sort(np.concatenate([
             line.get_xdata()[np.isfinite(line.get_ydata())] for line in axes.lines if line.get_marker() == "o"
         ]))  # fmt: skip
@@ -241,5 +244,5 @@ class TestPicture:
     def test_nothing_but_overturning_and_nothing_at_all_can_be_drawn(self):
         shape = SpectrumShape(blocks_of(0.1, "linear2").structure)
         for peaks in (inf, nan):
-            found = Spectrum(shape, np.array([0.5, 1.0]), np.full((2, 2), peaks))
+            found = Spectrum(shape, np.array([0.5, 1.0]), np.full((2, 2), peaks), np.full((2, 2), peaks))
             draw_spectra([found], (0.5,), "title").draw_without_rendering()
