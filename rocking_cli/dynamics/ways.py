@@ -101,8 +101,8 @@ def _choose(requested: str | None) -> tuple[str, dict[str, Kernel]]:
     here = usable()
     way = here[0] if requested in (None, MACHINE_CODE) else requested
     if way not in here:
-        levels = ", ".join(each for each in here if each in LEVELS)
-        raise InputError(f"{KERNELS_VARIABLE} is {way!r}, but this processor has only {levels}: take one of these")
+        asked, way = way, here[0]  # those that it lacks are the highest
+        warn(KernelWarning(f"{KERNELS_VARIABLE} is {asked!r}, which this processor has not: kernels run at {way}"))
     return way, {name: as_shipped(of, way) for name, of in SETS.items() if way != SCALAR or not of.lanes}
 
 

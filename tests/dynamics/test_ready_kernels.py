@@ -239,21 +239,24 @@ class TestWays:
             ways.kernel(PULSES)
 
     @pytest.mark.parametrize("level", LEVELS)
-    def test_a_level_is_taken_or_refused(self, choose, level):
+    def test_a_level_is_taken_or_the_next_lower_one_which_is_said(self, choose, level):
         choose(level)
         if level in shipped.levels():
             assert ways.way() == level and ways.kernel(PULSES)
         else:
-            with pytest.raises(InputError, match=f"is '{level}', but this processor has only .*v1: take one of these"):
+            with pytest.warns(
+                ways.KernelWarning, match=f"is '{level}', which this processor has not: kernels run at v"
+            ):
                 ways.kernel(PULSES)
+            assert ways.way() == shipped.levels()[0] < level
 
     def test_a_processor_without_extensions_takes_the_lowest(self, choose, monkeypatch):
         monkeypatch.setattr(shipped, "levels", lambda: ("v1",))
         choose()
         assert ways.way() == "v1" and ways.usable() == ("v1", "scalar", "python")
         choose("v3")
-        with pytest.raises(InputError, match="this processor has only v1"):
-            ways.way()
+        with pytest.warns(ways.KernelWarning, match="'v3', which this processor has not: kernels run at v1"):
+            assert ways.way() == "v1"
 
     def test_without_lanes_and_by_python_batches_are_scalar(self, choose, monkeypatch):
         monkeypatch.setitem(ways.SETS, "toy", toy_lanes.TOY)
