@@ -194,7 +194,7 @@ def respond_many(
     -------
     Outcomes
         Outcomes in the order of `runs`, for any number of threads. A motion whose outcome becomes unknown ends there,
-        and its `opening` is the largest until then. Samples are not kept: each history takes some 100 bytes of memory.
+        and its `opening` is the largest until then. Samples are not kept: each history takes some 700 bytes of memory.
 
     Raises
     ------
