@@ -95,7 +95,7 @@ class TestWheels:
             left_out = {name.rpartition("/")[2] for name in {*source.namelist()} - {*packed.namelist()}}
             packed.extractall(tmp_path / "there")
         assert {name.rpartition("/")[2] for name in ready} == {"manifest.json", *([library] if library else [])}
-        assert list(listed) == ([library] if library else []) and left_out == {*shipped.LIBRARIES} - {library}
+        assert list(listed) == ([library] if library else []) and left_out == {*shipped.manifest()["files"]} - {library}
         assert f"Root-Is-Purelib: {str(library is None).lower()}" in metadata
         code = "import rocking_cli; from rocking_cli.dynamics import ways; print(repr(ways.fault_of_shipped()))"
         environment = {**os.environ, "PYTHONPATH": str(tmp_path / "there")}

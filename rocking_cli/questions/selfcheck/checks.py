@@ -292,6 +292,8 @@ def _computed(quick: bool) -> Iterator[NDArray[Any]]:
     yield from (getattr(responses, name) for name in OUTCOME_FIELDS)
     models = [*made().models(("nonlinear", "linear2")), tied.model("nonlinear")]
     models.append(made("wall", thickness=0.3, height=3.0).model("nonlinear"))
+    together = respond_many(models, MOTIONS[:1], Runs.every(len(models), 1, scales=(0.9, 1.2, 1.6)))  # in lanes
+    yield from (getattr(together, name) for name in OUTCOME_FIELDS)
     for motion in MOTIONS[:1] if quick else MOTIONS:
         both = replace(motion, vertical=_motion(0.07, motion.acceleration[::-1] / 2))
         for model in models:

@@ -228,7 +228,23 @@ class TestEachCheck:
 
             return kernel
 
-        monkeypatch.setattr(ways, "in_python", spoilt)
+        if name in ("lanes", "steps"):  # which Python has not
+            shipped_way = ways.as_shipped
+
+            def spoilt(of, level="v1"):
+                run = shipped_way(of, level)
+
+                def kernel(*arguments):
+                    run(*arguments)
+                    row = arguments[10][0, stepping.PEAK :][:1]
+                    row[:] = np.nextafter(row, 9.0)
+
+                def coarser(rows, pairs, rtol):
+                    return run(rows, 1, rtol)
+
+                return run if of.name != name else coarser if of.lanes else kernel
+
+        monkeypatch.setattr(ways, "as_shipped" if name in ("lanes", "steps") else "in_python", spoilt)
         ways.forget()
         found = checked("kernels")
         ways.forget()
