@@ -248,7 +248,7 @@ class Spectrum:
 
     @property
     def rate_over_p(self) -> Reals:
-        """Peak angular velocity over p, shape (m, n) [rad]: the ordinate of the spectrum of angular velocity."""
+        """Peak angular velocity over p, the ordinate of its spectrum, shape (m, n) [rad]."""
         return self.peak_rate * self.periods / (2 * pi)
 
     def fractile(self, q: float, of: Reals | None = None) -> Reals:
