@@ -222,7 +222,10 @@ def polynomials(mechanism: Mechanism, direction: Direction, table: DirectionTabl
     between = places[count:] * (2 / reach) - 1
     largest = np.abs(values).max(axis=1)
     for pairs in PAIRS:
-        powers = np.array([chebyshev.cheb2poly(each) for each in fitted[: 2 * pairs].T])
+        powers = np.zeros((2, 2 * pairs))
+        for row, each in zip(powers, fitted[: 2 * pairs].T, strict=True):
+            series = chebyshev.cheb2poly(each)  # without trailing zeros
+            row[: series.size] = series
         missed = polynomial.polyval(between, powers.T) - values[:, count:]
         if (np.abs(missed).max(axis=1) <= SMOOTH * largest).all():
             result = np.zeros(4 * MOST_PAIRS)
