@@ -167,7 +167,7 @@ def collecting() -> float:
         start, runs = time.perf_counter(), 0
         for k in store.chunks:
             numbers = np.arange(*store.ends(k))
-            columns = random.uniform(0.1, 0.9, (12, numbers.size))
+            columns = random.uniform(0.1, 0.9, (13, numbers.size))
             store.add(RunRows(numbers, *columns[:2], np.zeros(numbers.size), *columns[2:], numbers < 0))
             runs += numbers.size
         return runs / (time.perf_counter() - start)

@@ -132,13 +132,11 @@ class Deck(NamedTuple):
     # dphi/dq, powers 0 to 3 of the place in the cell. Where vertical motion meets a tie, forces are of (cells, 2, 3, 4)
     # with that of Q/(g sqrt(I)) behind: the kernel is compiled for each, and without it costs nothing more.
     forces: np.ndarray
-    smooth: (
-        np.ndarray
-    )  # (m, 2, 4 pairs): polynomials of the same two forces in y = q PER_REACH - 1: even and odd powers
+    # (m, 2, 4 pairs): polynomials of the same two forces in y = q PER_REACH - 1: even and odd powers
+    smooth: np.ndarray
     angles: np.ndarray
-    certain: (
-        np.ndarray
-    )  # (cells, 2): largest ground acceleration, over g, that cannot stop an outward motion from there
+    # (cells, 2): largest ground acceleration, over g, that cannot stop an outward motion from there
+    certain: np.ndarray
     held: np.ndarray  # (cells, 2): the largest |Q|/(g |B|) still to come; of no rows where `forces` are of two
     corners: np.ndarray  # int (cells, 2): corners of the force up to the start of each cell; of no rows if none has any
     records: np.ndarray  # (k, 10): see the columns above

@@ -370,8 +370,7 @@ def filled(i, lanes, run, runs, deck, samples, all_marks):
     integers[i, INT_LAST] = int(of[U_SIZE]) - 1 if what[LOOSE] == 0 else -1
     integers[i, INT_NEXT] = int(of[U_FIRST]) + 1
     integers[i, INT_EQUAL] = 1 if have_equal_sides(deck.smooth[int(what[STRUCTURE])], numbers) else 0
-    # Whether an impact needs nothing of `land` but the rebound.
-    integers[i, INT_CALM] = 1 if what[LOOSE] == 0 and is_calm(watch, numbers) else 0
+    integers[i, INT_CALM] = 1 if is_calm(watch, numbers) else 0
     how, progress = started(structure, motion, what[START], watch, samples, marks)
     if how != ROCKING:
         close(structure, how, marks)
@@ -464,10 +463,11 @@ def attended(i, lanes, runs, deck, rtol, samples, all_marks):
     interval, piece = Interval(t, span, u0, ramp), VerticalPiece(rows[ROW_WEIGHT * LANES + i], 0.0, span)
     side, after, resting = rebound(lanes.numbers[i], law, ended.w, interval, piece, tau, loops)
     alone = tau >= end or loops > CHATTER
-    if resting or integers[i, INT_CALM] == 0:
+    loose, loud = what[LOOSE] != 0, integers[i, INT_CALM] == 0
+    if resting or loose or loud:
         structure, motion = structure_of(deck, what, lanes.numbers[i]), motion_of(deck, what)
-        watch, loud = watched(i, lanes, deck, what, motion), integers[i, INT_CALM] == 0
-        phase = land(structure, phase, interval, piece, tau, what[LOOSE] != 0, loops, loud, watch, samples, marks)
+        watch = watched(i, lanes, deck, what, motion)
+        phase = land(structure, phase, interval, piece, tau, loose, loops, loud, watch, samples, marks)
         alone = alone or not fits_a_lane(phase, watch)
     else:
         lanes.notes[i, SO_FAR], lanes.notes[i, SO_FAR + 1], lanes.notes[i, SEEN] = marks[PEAK], marks[PEAK + 1], nan

@@ -8,7 +8,7 @@ import pytest
 from numpy.polynomial import chebyshev
 
 import rocking_cli as rk
-from rocking_cli.dynamics import kernels, stepping, ways
+from rocking_cli.dynamics import kernels, openings, stepping, ways
 from rocking_cli.dynamics.calling import STEPS
 from rocking_cli.dynamics.deck import fit_lanes, lay_out, run_deck, run_lanes
 from rocking_cli.dynamics.tables import SMOOTH
@@ -110,6 +110,18 @@ def test_hops_far_below_a_millionth_and_dips_inside_a_step_are_those_of_each_alo
     assert np.array_equal(marks_of(run_lanes, deck, rows), alone, equal_nan=True)
     ratios = alone[:, stepping.PEAK : stepping.PEAK + 2].max(axis=1) / model.phi_cr[0]
     assert (ratios < 1e-6).sum() > 20 and (ratios > 0).mean() > 0.5
+
+
+def test_joints_that_open_beyond_phi_cr_close_at_an_impact_of_a_loose_structure_as_alone():
+    """An impact that presses all joints together is none of theirs, though the outcome is unknown from it on."""
+    model, rng, pulse, count = model_of("masonry/portal"), np.random.default_rng(4), 2, 800
+    deck, rows = lay_out([model], motions()), random_runs(np.random.default_rng(9), [model], count)
+    rows[:, kernels.LOOSE], rows[:, kernels.START], rows[:, kernels.RECORD] = 1, 0, pulse
+    uplift = model.numbers[:, stepping.LAMBDA].min() * 9.80665 / np.abs(motions()[pulse].acceleration).max()
+    rows[:, kernels.FACTOR] = uplift * np.random.default_rng(3).uniform(3, 9, count) * rng.choice([-1, 1], count)
+    alone = marks_of(run_deck, deck, rows)
+    assert np.array_equal(marks_of(run_lanes, deck, rows), alone, equal_nan=True)
+    assert (alone[:, openings.WARNED] < alone[:, openings.PASSED]).any()  # it opens before it comes down
 
 
 @pytest.mark.parametrize("name", SMOOTH_EXAMPLES)
