@@ -50,7 +50,7 @@ SYSTEMS = {
     "darwin-aarch64.dylib": "aarch64-macos.11.0",
     "win32-x86_64.dll": "x86_64-windows-gnu",
     "win32-aarch64.dll": "aarch64-windows-gnu",
-    "wasm.wasm": "wasm64-freestanding",
+    "wasm.wasm": "wasm32-freestanding",
 }
 """The libraries, and what Zig calls the systems. Those of Linux need no library of C, so any will do."""
 LINKING = {
@@ -67,7 +67,7 @@ LEVELS = {
         "v4": ('"target-cpu"="x86-64-v4" "target-features"="" "prefer-vector-width"="512" ', r"mulpd\s.*%zmm"),
     },
     "aarch64": {"v1": ("", r"fmul(\.|\s+v\d+\.)2d")},
-    "wasm64": {},  # a call by address needs tables that browsers do not know: one history at a time
+    "wasm32": {},  # a call by address would need a table of functions: one history at a time
 }
 """Levels of each kind of processor, the attributes of functions for them, and the instruction that shows vectors."""
 EXACT = ("fabs", "sqrt")  # of IEEE 754: every processor here has instructions for them
@@ -205,6 +205,8 @@ def versions(kernel: KernelSet, text: str, processor: str) -> dict[str, str]:
 def called_by_address(text: str, imported: bool) -> str:
     """A module, as text, whose calls of C go through addresses that are handed to the library, or are imports.
 
+    In memory, Numba has places of 64 bits for addresses. A browser, whose calls are imports, has shorter ones there.
+
     What LLVM itself puts a call for, `ceil`, `floor` and those of memory, has the name of C within the library; the
     others get one that LLVM does not know, so that it takes no two of them together.
     """
@@ -212,6 +214,9 @@ def called_by_address(text: str, imported: bool) -> str:
         sys.exit(f"arithmetic is not that of IEEE 754: {fast[0]}")
     for name in EXACT:
         text = text.replace(f"@{name}(", f"@llvm.{name}.f64(")
+    if imported:
+        text = re.sub(r"alloca \{.*\}", lambda room: room[0].replace("ptr", "i64"), text)
+        text = re.sub(r"  store (\{.*\bptr\b.*\}) (%\S+), ptr (%\S+),.*\n", member_by_member, text)
     for name, types_of in FUNCTIONS.items():
         result, *types_in = types_of.split()
         known = name in ("ceil", "floor", "memcpy", "memset")
@@ -232,6 +237,29 @@ define {"hidden" if known else "internal"} {result} @{entry}({", ".join(given)})
 }}
 """
     return text
+
+
+def member_by_member(store: re.Match[str]) -> str:
+    """A store of a structure with addresses in it, as text: its members each at the place that it has for Numba."""
+    kind, value, to = store.groups()
+    lines, path, at = [], list[int](), 0
+    for token in re.findall(r"[{}]|\[\d+ x i64\]|\w+", kind):
+        if token == "{":
+            path.append(0)
+            continue
+        if token == "}":
+            path.pop()
+        else:
+            at += 0 if token == "i8" else -at % 8
+            member, place = f"{value}.{at}", f"{to}.{at}"
+            lines += [
+                f"  {member} = extractvalue {kind} {value}, {', '.join(map(str, path))}",
+                f"  {place} = getelementptr i8, ptr {to}, i64 {at}",
+                f"  store {token} {member}, ptr {place}",
+            ]
+            at += 1 if token == "i8" else 8 * int(token[1:].partition(" ")[0]) if token[0] == "[" else 8
+        path[-1:] = [each + 1 for each in path[-1:]]
+    return "\n".join(lines) + "\n"
 
 
 def library(text: str, name: str) -> bytes:
@@ -274,7 +302,7 @@ def main(folder: Path) -> None:
         ]
         for each in modules[1:]:
             modules[0].link_in(each)
-        for_processor[processor] = called_by_address(str(modules[0]), imported=processor == "wasm64")
+        for_processor[processor] = called_by_address(str(modules[0]), imported=processor == "wasm32")
     with ThreadPoolExecutor(os.cpu_count()) as threads:
         contents = threads.map(lambda name: library(for_processor[SYSTEMS[name].partition("-")[0]], name), SYSTEMS)
     folder.mkdir(parents=True, exist_ok=True)

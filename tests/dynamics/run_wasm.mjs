@@ -10,14 +10,9 @@ const called = (name) => (...numbers) => Buffer.from(results[name][bits(...numbe
 const env = new Proxy({}, { get: (_, name) => called(name.replace("call_", "")) });
 const { exports } = (await WebAssembly.instantiate(library, { env })).instance;
 const given = Buffer.from(image, "base64");
-const pages = Math.ceil((base + given.length) / 65536);
-try {
-  exports.memory.grow(BigInt(pages));
-} catch { // of engines before addresses of 64 bits were a standard
-  exports.memory.grow(pages);
-}
+exports.memory.grow(Math.ceil((base + given.length) / 65536));
 const memory = Buffer.from(exports.memory.buffer);
 memory.set(given, base);
-const status = exports[entry](...rows.map(BigInt));
+const status = exports[entry](...rows);
 if (status) throw new Error(`status ${status}`);
 process.stdout.write(memory.subarray(base, base + given.length).toString("base64"));

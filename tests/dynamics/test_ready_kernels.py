@@ -295,7 +295,7 @@ import sys, make_kernels as make
 from pathlib import Path
 from tests.dynamics import toy_lanes
 make.SETS = {{"toy": toy_lanes.{of}}}
-del make.SYSTEMS["wasm.wasm"], make.LEVELS["wasm64"]  # which have no lanes
+del make.SYSTEMS["wasm.wasm"], make.LEVELS["wasm32"]  # which have no lanes
 {spoil}
 make.main(Path(sys.argv[1]))
 """
@@ -360,9 +360,6 @@ class Recorder:
         return result
 
 
-MEMORY64 = ["--experimental-wasm-memory64"]
-
-
 @pytest.mark.skipif(shutil.which("node") is None, reason="no node here")
 def test_a_browser_computes_the_same_bits(choose, monkeypatch, tmp_path):
     choose("ready")
@@ -389,7 +386,6 @@ def test_a_browser_computes_the_same_bits(choose, monkeypatch, tmp_path):
         (tmp_path / "call.json").write_text(json.dumps(given), encoding="utf-8")
         words = [
             "node",
-            *MEMORY64,
             Path(__file__).with_name("run_wasm.mjs"),
             shipped.READY_FOLDER / "wasm.wasm",
             "call.json",
