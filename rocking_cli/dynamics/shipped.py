@@ -70,7 +70,10 @@ def place() -> Path:
 def load(kernel: KernelSet, level: str = LEVELS[-1]) -> Any:
     """Return the function of a kernel, of lanes at a level. Raises `ImportError` if its library cannot be used."""
     name = symbol(kernel.name, level if kernel.lanes else "")
-    return ctypes.CFUNCTYPE(ctypes.c_int32, *_ARGUMENT_TYPES)((name, loaded()))
+    try:
+        return ctypes.CFUNCTYPE(ctypes.c_int32, *_ARGUMENT_TYPES)((name, loaded()))
+    except AttributeError as error:
+        raise BrokenKernels(f"{place()} is of another version, reinstall rocking-cli: {error}") from error
 
 
 def levels() -> tuple[str, ...]:
@@ -96,6 +99,7 @@ def loaded() -> ctypes.CDLL:
             raise BrokenKernels(f"{at} is damaged, reinstall rocking-cli")
         library = ctypes.CDLL(str(at))
         c = ctypes.CDLL("ucrtbase" if sys.platform == "win32" else None)
+        library.rocking_level.restype = ctypes.c_int32
         for name in FUNCTIONS:
             address = ctypes.cast(getattr(c, name), ctypes.c_void_p).value
             ctypes.c_void_p.in_dll(library, symbol(name)).value = address

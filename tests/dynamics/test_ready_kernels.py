@@ -466,6 +466,16 @@ class TestLibrary:
         with pytest.raises(BrokenKernels, match="cannot be read"):
             shipped.load(PULSES)
 
+    @pytest.mark.parametrize("symbol", [b"rocking_level", b"rocking_steps_v1"])
+    def test_one_of_another_version(self, folder, symbol):
+        """As an update that did not come to its end leaves it."""
+        other, manifest = shipped.place().read_bytes().replace(symbol, symbol[:-1] + b"x"), shipped.manifest()
+        shipped.place().write_bytes(other)
+        manifest["files"][shipped.place().name] = hashlib.sha256(other).hexdigest()
+        (folder / shipped.MANIFEST_FILE).write_text(json.dumps(manifest), encoding="utf-8")
+        with pytest.raises(BrokenKernels, match="reinstall rocking-cli"):
+            shipped.load(STEPS)
+
     @pytest.mark.parametrize("other", [b"no library", "another system"])
     def test_one_that_the_system_does_not_load(self, folder, other):
         manifest = shipped.manifest()
