@@ -97,6 +97,7 @@ bench: setup  ## Ratios within one run; see docs/performance.md. RECORD=FILE for
 	$(BIN)/python benchmarks/histories.py $(RECORD)
 	$(BIN)/python benchmarks/yardstick.py $(RECORD)
 	$(BIN)/python benchmarks/maps.py
+	-$(BIN)/python benchmarks/pages.py
 	$(BIN)/python benchmarks/fragility.py
 	$(BIN)/python benchmarks/fits.py
 	$(BIN)/python benchmarks/linkages.py

@@ -19,6 +19,7 @@ TOPICS = {
     "structures": (7_000, "docs/structures.md docs/mechanisms/*.md docs/loads.md"),
     "ground motions": (3_500, "docs/motions.md"),
     "histories, margins, maps, spectra": (4_500, "docs/histories.md"),
+    "pages that answer": (700, "docs/explore.md"),
     "verification and sheet": (4_000, "docs/verification.md"),
     "fragility": (3_500, "docs/fragility.md"),
     "survey and design": (1_800, "docs/survey.md"),

@@ -72,6 +72,7 @@ from rocking_cli.questions.design.study import Design as Design
 from rocking_cli.questions.design.study import Span as Span
 from rocking_cli.questions.equivalent_pulses.verb import EquivalentResponses as EquivalentResponses
 from rocking_cli.questions.error.study import Linearisation as Linearisation
+from rocking_cli.questions.explore.study import Exploration as Exploration
 from rocking_cli.questions.fragility.asked import Shaken as Shaken
 from rocking_cli.questions.fragility.asked import Shaking as Shaking
 from rocking_cli.questions.fragility.own_data import FittedFragility as FittedFragility
@@ -914,6 +915,118 @@ def error(
     >>> answer = rk.error(rk.Wall(thickness=0.3, height=3.0), at=[0.3])
     >>> answer.result[0].period_ratio.round(3).tolist()
     [0.963]
+    """
+
+def explore(
+    structures: StructureLike | Sequence[StructureLike],
+    motions: Motion | Sequence[Motion] | Motions,
+    *,
+    vary: Any = ...,
+    out: str | Path = ...,
+    units: str | None = ...,
+    dt: float | str | None = ...,
+    channel: str | int | None = ...,
+    quantity: Literal["acceleration", "velocity", "displacement"] | None = ...,
+    gain: Gain | str | None = ...,
+    run_on: bool | None = ...,
+    despite_header: bool | None = ...,
+    other: str | Path | None = ...,
+    other_channel: str | int | None = ...,
+    azimuth: float | str | None = ...,
+    floor: Floor | str | Mapping[str, Any] | None = ...,
+    scale: float | str | None = ...,
+    target_pga: float | str | None = ...,
+    target_pgv: float | str | None = ...,
+    polarity: Literal['1', '-1', 1, -1] = ...,
+    opening: float | str = ...,
+    neighbours: int | None = ...,
+    amplitude_deviation: float | str = ...,
+    slenderness_deviation: float | str | None = ...,
+    restitution_deviation: float | str | None = ...,
+    watch: Watcher = ...,
+) -> Answer[Exploration]:
+    """Write a page on which structures and their ground motion can be changed, and which answers at once.
+
+    Parameters
+    ----------
+    structures : StructureLike | Sequence[StructureLike]
+        One structure or several, or their YAML files.
+    motions : Motion | Sequence[Motion] | Motions
+        One motion or several, their files, or pulses as text; a pattern such as `records/*.AT2` gives several.
+    vary : Any, optional
+        Field to vary and its range, without a unit in that of the field: width=0.2m:0.8m, ties.bar.prestress=0:50kN,
+        loads.0.mass=1t:9t.
+    out : str | Path, optional
+        The page. By default explore.html.
+    units : str | None, optional
+        Unit of the record, if the file does not state it.
+    dt : float | str | None, optional
+        Sampling interval in s, if the file has no times.
+    channel : str | int | None, optional
+        Channel or column to read: its number, from 1, or its name.
+    quantity : Literal["acceleration", "velocity", "displacement"] | None, optional
+        Quantity in the record; velocities and displacements are differentiated.
+    gain : Gain | str | None, optional
+        Instrument sensitivity: the value of one unit of the record, such as 0.05m/V or 4.7e-6m/s2/count.
+    run_on : bool | None, optional
+        Read a text without times as one series that runs on over its rows.
+    despite_header : bool | None, optional
+        Accept a text with other numbers of points or peaks than its header states, as it was cut on purpose.
+    other : str | Path | None, optional
+        Second horizontal component, perpendicular to the record; the two are rotated into the plane of the structure.
+    other_channel : str | int | None, optional
+        Channel of the second component in its file.
+    azimuth : float | str | None, optional
+        Azimuth of the structure's plane, in degrees: 0 is the record, 90 the second. `respond` also accepts all.
+    floor : Floor | str | Mapping[str, Any] | None, optional
+        Floor of a building on which the structure stands: T1=0.4,xi=0.05,z=6m,H=9m,n=3 (or z/H=0.67, gamma=1.29).
+    scale : float | str | None, optional
+        Scale factor on the motion.
+    target_pga : float | str | None, optional
+        Peak ground acceleration to scale the motion to, in g.
+    target_pgv : float | str | None, optional
+        Peak ground velocity to scale the motion to, in m/s.
+    polarity : {"1", "-1"}, optional
+        Polarity of the motion: 1 as given, -1 reversed. By default 1.
+    opening : float, optional
+        Largest opening of a joint up to which a history holds, over D_cr. By default 0.005.
+    neighbours : int | None, optional
+        Number of neighbouring motions that the page simulates. By default 200.
+    amplitude_deviation : float, optional
+        Standard deviation of ln amplitude of the neighbours. By default 0.04.
+    slenderness_deviation : float | None, optional
+        Standard deviation of ln slenderness. By default that of the file, or 10 %.
+    restitution_deviation : float | None, optional
+        Standard deviation of restitution. By default that of the file, 0.03 of a given value, or 0.05.
+    watch : Watcher
+        Told what is read and written, what is doubtful, and how far the work is.
+
+    Returns
+    -------
+    Answer of Exploration
+        What the page offers; its attribute `file` is the page.
+
+    Raises
+    ------
+    InputError
+        If a value is out of range, a file cannot be read or written, or the page cannot follow a structure.
+    MechanismError
+        If a structure has no critical rotation or no uplift acceleration.
+    SolverError
+        If a motion cannot be simulated to its end.
+
+    Notes
+    -----
+    The page runs the shipped kernels in the browser; its histories have the bits of those of `respond`.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> from tempfile import TemporaryDirectory
+    >>> with TemporaryDirectory() as folder:
+    ...     answer = rk.explore(rk.Block(width=0.7, height=2.8), "sine:0.3g:0.9s", out=f"{folder}/block.html")
+    >>> f"{answer.histories[0].peak_ratio:.4g}"
+    '0.1315'
     """
 
 def fragility(
@@ -2140,6 +2253,7 @@ def report(
     *,
     out: str | Path | None = ...,
     verify: SiteLike | None = ...,
+    explore: bool = ...,
     units: str | None = ...,
     dt: float | str | None = ...,
     channel: str | int | None = ...,
@@ -2185,6 +2299,8 @@ def report(
         the ending .html, in this folder; none with JSON, or in Python.
     verify : SiteLike | None, optional
         Site file of a verification by code that becomes part of the report.
+    explore : bool, optional
+        Put the page of `rocking explore` in the place of the animation, in HTML.
     units : str | None, optional
         Unit of the record, if the file does not state it.
     dt : float | str | None, optional

@@ -97,6 +97,7 @@ FOR_KEYS = (
     "overturning examples/block.yaml --points 5 --json",
     "overturning --compare examples/block.yaml examples/frame.yaml examples/wall.yaml --points 3 --json",
     "report examples/frame.yaml --json",
+    "explore examples/block.yaml --pulse ricker:0.4g:1s --out page.html --json",
     "import examples/drawings/church.dxf --merge-gap 12mm --depth 1 --density 2000 --json",
 )
 """Commands of which only the keys are held: their values depend on the machine, or others have the like."""

@@ -36,6 +36,7 @@ PLATFORMS = {
     "win32-x86_64.dll": "win_amd64",
 }
 """The platforms of a wheel with one library."""
+FOR_PAGES = "wasm.wasm"  # a library that every wheel has
 HISTORY = ["respond", "examples/block.yaml", "--record", "examples/accel.csv", "--neighbours", "0", "--json"]
 FOREIGN = {"PYTHONPATH", "PYTHONHOME", "VIRTUAL_ENV", "COLUMNS"}  # would let the checkout in, or another width
 
@@ -75,13 +76,13 @@ def run(words: list[str | Path], folder: Path, into: Path | None = None, warned:
 
 
 def with_library(wheel: Path, library: str | None, to: Path) -> Path:
-    """Make a wheel with one library, or none, of that with all of them; its manifest lists what is in it."""
+    """Make a wheel with one library of a system, or none, of that with all; its manifest lists what is in it."""
     with TemporaryDirectory() as folder:
         run([*TOOL, "unpack", "--dest", folder, wheel], PROJECT)
         (content,) = Path(folder).iterdir()
         manifest = content / "rocking_cli" / "dynamics" / "ready" / "manifest.json"
         listed = json.loads(manifest.read_text(encoding="utf-8"))
-        for name in [each for each in listed["files"] if each != library]:
+        for name in [each for each in listed["files"] if each not in (library, FOR_PAGES)]:
             manifest.with_name(name).unlink()
             del listed["files"][name]
         manifest.write_text(json.dumps(listed, indent=1) + "\n", encoding="utf-8")

@@ -34,7 +34,8 @@ def opened(browser, path, **context):
     shown = browser.new_context(**{"viewport": {"width": 1000, "height": 900}, "reduced_motion": "reduce", **context})
     try:
         page = shown.new_page()
-        page.on("request", lambda request: asked.append(request.url))
+        # A worker is made of a text of the page itself.
+        page.on("request", lambda request: request.url.startswith("blob:") or asked.append(request.url))
         page.on("console", lambda message: said.append(message.text))
         page.on("pageerror", lambda error: said.append(str(error)))
         page.goto(path.as_uri())

@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.files import check_writable
-from rocking_cli.io.json_text import json_text
 from rocking_cli.text import numbered
 from rocking_cli.views.column import table_of, text_columns
 from rocking_cli.views.view import Table, View, number
@@ -114,6 +113,8 @@ class Answer(Generic[R]):
 
     def to_dict(self) -> dict[str, Any]:
         """Return the result as plain data, equal to the JSON of the command line."""
+        from rocking_cli.io.json_text import json_text
+
         plain: dict[str, Any] = json.loads(json_text(self.view.plain()))
         return plain
 

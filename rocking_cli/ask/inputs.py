@@ -20,7 +20,6 @@ from rocking_cli.errors import InputError, MechanismError, Problem, RockingError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.pulses import Pulse
 from rocking_cli.excitation.records.opening import STANDARD_INPUT, name_of, original
-from rocking_cli.io.json_text import json_text
 from rocking_cli.io.yaml_file import decoded, read_text
 from rocking_cli.names import LANGUAGES, OPENING
 from rocking_cli.structure import Structure, with_name
@@ -165,6 +164,8 @@ def site_of(given: SiteLike) -> SiteFile:
     from rocking_cli.verification.code import SITE_HINT
 
     if isinstance(given, Mapping):
+        from rocking_cli.io.json_text import json_text
+
         return site_in(parse(json_text(given), "site", "site", SITE_HINT))
     return read_site(Path(given))
 
@@ -230,4 +231,6 @@ def structure_figure(mechanism: Mechanism, found: Mapping[Direction, CollapseMec
 def yaml_of(mechanism: Mechanism) -> str:
     """Return the YAML file of a mechanism made in Python."""
     fields = {"mechanism": mechanism.mechanism, **mechanism.model_dump(exclude_unset=True)}
+    from rocking_cli.io.json_text import json_text
+
     return "".join(f"{key}: {json_text(value)}\n" for key, value in fields.items())

@@ -29,7 +29,6 @@ from rocking_cli.errors import (
     RockingError,
     SolverError,
 )
-from rocking_cli.io.json_text import json_text
 from rocking_cli.text import printable
 from rocking_cli.views.view import ASIDE, Aside
 
@@ -178,6 +177,8 @@ def sentence(text: str) -> None:
 
 def print_json(data: Mapping[str, Any]) -> None:
     """Print one JSON object on one line of standard output."""
+    from rocking_cli.io.json_text import json_text
+
     click.echo(json_text(data), file=_results)
 
 

@@ -39,6 +39,8 @@ LIBRARIES = (
     "win32-x86_64.dll",
 )  # fmt: skip
 """The libraries that belong to the package."""
+FOR_PAGES = "wasm.wasm"
+"""The library that pages run in a browser, the same for all systems."""
 FOR_ALL = "this rocking-cli was installed for any system, without kernels"
 _ARGUMENT_TYPES = (ctypes.POINTER(ctypes.c_int64), ctypes.POINTER(ctypes.c_double), ctypes.POINTER(ctypes.c_int64))
 
@@ -65,6 +67,15 @@ def place() -> Path:
     machine = platform.machine().lower()
     ending = LIBRARY_SUFFIXES.get(sys.platform, "so")
     return READY_FOLDER / f"{sys.platform}-{PROCESSOR_NAMES.get(machine, machine)}.{ending}"
+
+
+def for_pages() -> bytes:
+    """Return the library that pages run in a browser. Raises `BrokenKernels` if it is missing or damaged."""
+    at = READY_FOLDER / FOR_PAGES
+    content = at.read_bytes() if at.is_file() else b""
+    if hashlib.sha256(content).hexdigest() != manifest()["files"].get(at.name):
+        raise BrokenKernels(f"{at} is {'damaged' if content else 'missing'}, reinstall rocking-cli")
+    return content
 
 
 def load(kernel: KernelSet, level: str = LEVELS[-1]) -> Any:

@@ -106,14 +106,19 @@ class Neighbourhood:
             slenderness=slenderness if self.slenderness is None else self.slenderness,
         )
 
-    def drawn(self, model: Model) -> Draws:
-        """Draw the neighbours of a model."""
-        settled = self.of(model)
-        assert settled.restitution is not None and settled.slenderness is not None
+    def uniform(self) -> tuple[Reals, Reals, Reals]:
+        """Return the uniform numbers of amplitude, slenderness and restitution by which neighbours are drawn."""
         # A Latin hypercube, with less scatter than random numbers.
         random = np.random.default_rng(SEED)
         amplitude, one, other = (np.arange(self.count) + random.random((3, self.count))) / max(self.count, 1)
         restitution, slenderness = random.permutation(one), random.permutation(other)
+        return amplitude, slenderness, restitution
+
+    def drawn(self, model: Model) -> Draws:
+        """Draw the neighbours of a model."""
+        settled = self.of(model)
+        assert settled.restitution is not None and settled.slenderness is not None
+        amplitude, slenderness, restitution = self.uniform()
         wide = np.exp(settled.slenderness * _normal(slenderness))
         etas = [
             _below(restitution, eta, settled.restitution, most)

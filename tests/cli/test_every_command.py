@@ -185,6 +185,7 @@ HISTORIES = {
         and (found["holds"], found["value"], found["everywhere"]) == ([], None, False)
     ),
     "animate A --record R --neighbours 2 --out film.html": lambda found: found["outcome"] == "unknown",
+    "explore A --record R --neighbours 2 --out page.html": lambda found: found["structures"][0]["outcome"] == "unknown",
     "pulse A --ag 2g --period 0.4": lambda found: found["responses"]["nonlinear"]["unknown"],
     "overturning A --model nonlinear --ag 1.9g:2g --period 0.4:0.41 --points 3 --plot p.svg": (
         lambda found: found["shares"]["unknown"] == 1

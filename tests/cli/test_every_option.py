@@ -221,8 +221,13 @@ CALLS = {
     "report": (
         {"structure": WEAK, "motions": RECORD, "neighbours": 2},
         {"structure": OTHER, "motions": PULSE, "out": "o.html", "polarity": "1", "verify": SITE, "state": "SLC",
-         "on_floor": True, "opening": 1.0, "restitution": 0.8, "language": "it", "project": "odd",
+         "on_floor": True, "opening": 1.0, "restitution": 0.8, "language": "it", "project": "odd", "explore": True,
          "place": "odd", "client": "odd", "author": "odd", "logo": "in.svg", "origin": "odd"} | AROUND,
+    ),
+    "explore": (
+        {"structures": WEAK, "motions": STRONG, "neighbours": 2},
+        {"structures": BLOCK, "motions": PULSE, "polarity": "-1", "opening": 1.0, "vary": "width=0.5m:0.72m",
+         "out": "odd.html"} | AROUND,
     ),
 }  # fmt: skip
 """A question of each verb, and an odd value of each of its arguments."""
@@ -242,7 +247,8 @@ IDLE = [
     ("verify", {"structure": BLOCK, "site": SITE},
      {"polarity": "-1", "opening": 0.1, "state": "SLC", "on_floor": True, "project": "odd", "place": "odd",
       "client": "odd", "author": "odd", "logo": "in.svg", "origin": "odd"}),
-    ("report", {"structure": BLOCK}, {"polarity": "-1", "opening": 0.1, "state": "SLC", "on_floor": True} | AROUND),
+    ("report", {"structure": BLOCK},
+     {"explore": True, "polarity": "-1", "opening": 0.1, "state": "SLC", "on_floor": True} | AROUND),
     ("pulse", {"a": 4.0, "omega": 6.0},
      {"structure": BLOCK, "ag": 0.5, "period": 0.7, "polarity": "-1", "opening": 0.1}),
     ("overturning", {"points": 3}, {"opening": 0.1}),

@@ -56,6 +56,7 @@ LINES = {
     "free_blocks": "fragility INPUTS/free.yaml --store s.runs --jobs 1",
     "results": "results INPUTS/study.runs --out o.csv --curves c.csv --nrml n.xml --plot folder --pelicun parts",
     "report": f"report {BLOCK} {UNDER} -o r.html",
+    "explore": f"explore {BLOCK} {UNDER} --out e.html",
     "mechanisms": "mechanisms --plot p.png",
     "new": "new odd --plugin -o folder",
     "import": f"import {EXAMPLES}/drawings/wall.svg --scale 1:50 --depth 1 --density 2000 --out o.yaml --plot p.png",

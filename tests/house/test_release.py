@@ -94,8 +94,9 @@ class TestWheels:
             (metadata,) = (packed.read(name).decode() for name in packed.namelist() if name.endswith("/WHEEL"))
             left_out = {name.rpartition("/")[2] for name in {*source.namelist()} - {*packed.namelist()}}
             packed.extractall(tmp_path / "there")
-        assert {name.rpartition("/")[2] for name in ready} == {"manifest.json", *([library] if library else [])}
-        assert list(listed) == ([library] if library else []) and left_out == {*shipped.manifest()["files"]} - {library}
+        own = {shipped.FOR_PAGES, *([library] if library else [])}
+        assert {name.rpartition("/")[2] for name in ready} == {"manifest.json", *own}
+        assert {*listed} == own and left_out == {*shipped.manifest()["files"]} - own
         assert f"Root-Is-Purelib: {str(library is None).lower()}" in metadata
         code = "import rocking_cli; from rocking_cli.dynamics import ways; print(repr(ways.fault_of_shipped()))"
         environment = {**os.environ, "PYTHONPATH": str(tmp_path / "there")}

@@ -47,13 +47,18 @@ def _aim(value: Any) -> Any:
     return value if isinstance(value, Aim) else Aim.parse(str(value))
 
 
+SPAN = Kind(_span, "FIELD=LOW:HIGH")
+VARY = (
+    "Field to vary and its range, without a unit in that of the field: width=0.2m:0.8m, ties.bar.prestress=0:50kN, "
+    "loads.0.mass=1t:9t."
+)
+
+
 class Sought(AskedModel):
     """What is sought: the field that varies, and the requirement."""
 
     vary: Span | str | tuple[str, float | str, float | str] = option(
-        "Field to vary and its range, without a unit in that of the field: width=0.2m:0.8m, "
-        "ties.bar.prestress=0:50kN, loads.0.mass=1t:9t.",
-        Kind(_span, "FIELD=LOW:HIGH"), where="input option", default=...,
+        VARY, SPAN, where="input option", default=...,
     )  # fmt: skip
     until: Aim | str = option(
         "Requirement: one of lambda, phi_cr, p, peak_ratio, peak_displacement, drift, tie_force, overturned, ratio, "

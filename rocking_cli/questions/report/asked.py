@@ -34,7 +34,7 @@ def _named_after(given: dict[str, Any], *, as_json: bool) -> Path | None:
     return None if as_json else Path("rocking" if file == STANDARD_OUTPUT else Path(file).stem).with_suffix(".html")
 
 
-OF_MOTIONS = ("polarity", "opening", "state", "on_floor", *NEIGHBOURS)
+OF_MOTIONS = ("explore", "polarity", "opening", "state", "on_floor", *NEIGHBOURS)
 
 
 class ReportAsked(OfStructure, MaybeUnderMotions, ForRecords, OfRestitution, Around, OfJoints, InLanguage, Identity):
@@ -56,12 +56,18 @@ class ReportAsked(OfStructure, MaybeUnderMotions, ForRecords, OfRestitution, Aro
     \b
     Example:
       rocking report frame.yaml --record accel.csv -o report.html
+      rocking report frame.yaml --record accel.csv --explore
       rocking report frame.yaml --record accel.csv -o report.pdf
       rocking report arch.yaml --record one.AT2 --record two.AT2 --target-pga 0.3
     """
 
     idle = (
         Idle("without ground motions", lambda asked: not asked.ground_motions, OF_MOTIONS),
+        Idle(
+            "but in a page of HTML",
+            lambda asked: asked.out is None or asked.out.suffix.lower() != ".html",
+            ("explore",),
+        ),
         Idle("without a verification: give {verify}", lambda asked: asked.verify is None, ("state", "on_floor")),
     )
     out: Path | None = option(
@@ -70,6 +76,7 @@ class ReportAsked(OfStructure, MaybeUnderMotions, ForRecords, OfRestitution, Aro
         usual="the name of FILE with the ending .html, in this folder; none with JSON, or in Python",
     )  # fmt: skip
     verify: SiteLike | None = option("Site file of a verification by code that becomes part of the report.", SITE)
+    explore: bool = option("Put the page of `rocking explore` in the place of the animation, in HTML.", default=False)
     polarity: Polarity = polarity("both")
     neighbours: int = option(
         "Number of neighbours of each motion to simulate, which show how close the result is.", WHOLE, default=200,

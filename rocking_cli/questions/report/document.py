@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from math import isnan
@@ -36,6 +36,7 @@ SUBSCRIPT, NO_BREAK = re.compile("_(.+)|([₁₂])"), "\N{NO-BREAK SPACE}"
 
 TOTAL_BINS = 6000  # bins of the curves of all motions: each curve has some two samples in a bin
 MIN_BINS, MAX_BINS = 300, 2500  # bins of the curves of one motion
+PageOf = Callable[[MotionResult], str]
 OWN_PARTS = frozenset({"drawing", "inputs", "basis-4"})
 """Parts of a calculation sheet that a report leaves out: it contains them already, or has another order."""
 BAD_CONCLUSIONS = frozenset(SEVERITY[SEVERITY.index(Concluded.NOT_CHECKED) :])
@@ -65,7 +66,13 @@ def _apart(parts: Sequence[SheetPart]) -> Iterator[SheetPart]:
             yield replace(part, key=f"verification-{part.key}", parts=[*_apart(part.parts)])
 
 
-def document(content: Assessment, sources: SheetSources, verified: VerifiedReport | None, language: str) -> Sheet:
+def document(
+    content: Assessment,
+    sources: SheetSources,
+    verified: VerifiedReport | None,
+    language: str,
+    page_of: PageOf | None = None,
+) -> Sheet:
     """Return the document of a report.
 
     Parameters
@@ -78,13 +85,15 @@ def document(content: Assessment, sources: SheetSources, verified: VerifiedRepor
         A verification to include in the report.
     language : str
         Language, "en" or "it".
+    page_of : callable, optional
+        Returns the page that takes the place of the animation under a motion.
     """
     say, mechanism = language_of(language), content.mechanism
     ends = [each for each in (verified.found.conclusion if verified else None, content.conclusion) if each is not None]
     values = context(content, say, verified.found if verified is not None else None)
     motions, sides = values["motions"], values["sides"]
     bins = int(np.clip(TOTAL_BINS // max(1, len(motions)), MIN_BINS, MAX_BINS))
-    moving_pictures = [_moving(content, each.result, bins, say) for each in motions]
+    moving_pictures = [_moving(content, each.result, bins, say, page_of) for each in motions]
     of_block = [errors(content.asked, kappa) for kappa in (1, 2)] if content.asked else []
     graded = [each.grade for each in of_block]
     fits = [(each.name, each.result.fits[0]) for each in motions if each.result.file and each.result.fits]
@@ -161,7 +170,7 @@ def _below(match: re.Match[str]) -> str:
     return f"_[{match[1] or ' ₁₂'.index(match[2])}]"
 
 
-def _moving(content: Assessment, result: MotionResult, bins: int, say: Language) -> Moving:
+def _moving(content: Assessment, result: MotionResult, bins: int, say: Language, page_of: PageOf | None) -> Moving:
     """Return the moving structure under a motion, with the charts; on paper, the plot of the response."""
     best = result.histories["nonlinear"]
     film = Film(content.picture, best, result.motion, result.contacts[result.polarity].assumed_friction)
@@ -174,6 +183,8 @@ def _moving(content: Assessment, result: MotionResult, bins: int, say: Language)
         moment = float(best.time[int(np.nanargmax(np.abs(best.ratio)))])
     label = f"{content.name}, as it moves under {result.given.motion.name}"
     picture = partial(draw_history, result.histories, result.motion, "", structure=content.structure)
+    if page_of is not None:
+        return Moving("", in_language(say, picture), page=page_of(result))
     data = moving(film, charts, label=label, speed=1.0, moment=moment)
     return Moving("", in_language(say, picture), data=data if say.key == "en" else _translated(say, data))
 

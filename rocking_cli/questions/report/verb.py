@@ -15,7 +15,7 @@ from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
     from rocking_cli.io.tables import Columns
-    from rocking_cli.questions.report.study import Assessment
+    from rocking_cli.questions.report.study import Assessment, MotionResult
 
 
 @verb(ReportAsked)
@@ -48,6 +48,9 @@ def report(asked: ReportAsked, watch: Watcher) -> Answer[Assessment]:
     >>> answer.has_block
     True
     """
+    from rocking_cli.questions.explore.asked import options_of
+    from rocking_cli.questions.explore.page import page
+    from rocking_cli.questions.explore.study import Exploration, check
     from rocking_cli.questions.report.document import VerifiedReport, document
     from rocking_cli.questions.report.study import gather
     from rocking_cli.questions.report.view import view
@@ -65,6 +68,8 @@ def report(asked: ReportAsked, watch: Watcher) -> Answer[Assessment]:
         sheet_of(site)
         refuse(site, motions=bool(requested))
     ready = structure_of(asked.structure, watch, asked.opening, asked.restitution)
+    if asked.explore:
+        check(ready)
     source = sheets.SheetOrigin.of(asked.origin or "rocking_cli.report(...)", ready)
     title = asked.title(source.command, language)
     chosen = requested.gather(ready.growth, watch) if requested else []
@@ -83,7 +88,14 @@ def report(asked: ReportAsked, watch: Watcher) -> Answer[Assessment]:
     if asked.out is not None:
         made = sheets.sources(ready.mechanism, asked.verify, chosen, source, site)
         try:
-            sheets.write(asked.out, document(content, made, verified, language), watch, by_browser=True)
+
+            def page_of(result: MotionResult) -> str:
+                history, options = result.runs[result.polarity]["nonlinear"], options_of(asked, result.given)
+                offered = Exploration([ready], result.given, result.polarity, around, [history], "", options)
+                return page(offered)
+
+            made_of = document(content, made, verified, language, page_of if asked.explore else None)
+            sheets.write(asked.out, made_of, watch, by_browser=True)
         except RockingError as error:
             watch.unwritten(error)
     shown = view(content, verified.found if verified is not None else None, language)

@@ -301,3 +301,11 @@ def _computed(quick: bool) -> Iterator[NDArray[Any]]:
                 history = follow(model, shaking, eta=0.9, most_kept=20)
                 yield from (history.phi, history.rate, history.impacts)
                 yield np.array([getattr(history, name) for name in OUTCOME_FIELDS], dtype=np.float64)
+
+
+def pages(_quick: bool) -> float:
+    """Return 0 if the library of pages is the one that was shipped. Raises `BrokenKernels` if it is not."""
+    from rocking_cli.dynamics import shipped  # some builds of Python have no ctypes
+
+    shipped.for_pages()
+    return 0.0

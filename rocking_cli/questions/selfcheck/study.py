@@ -12,7 +12,7 @@ from rocking_cli.errors import RockingError
 from rocking_cli.short_repr import short_repr
 from rocking_cli.text import seen
 
-NO_KERNEL = ("blocks", "joints", "filters", "records", "records_by_obspy", "units", "kernels")
+NO_KERNEL = ("blocks", "joints", "filters", "records", "records_by_obspy", "units", "kernels", "pages")
 """Checks that do not use the compiled kernels, or choose the engine themselves."""
 
 
@@ -158,6 +158,7 @@ records_by_obspy 1e-12: Samples read from SAC and miniSEED files by obspy, again
 units 1e-15: Sizes of all units of quantities, against those of their definitions
 threads 0 values: Outcomes of batches in several threads and in one: equal bits, and none is missing
 kernels 0 values: Shipped machine code and its source run by Python: equal bits
+pages 0 files: The kernels that pages run in a browser, against the hash of the file as shipped
 """.splitlines(),
     )
 )

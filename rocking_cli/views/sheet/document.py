@@ -62,9 +62,10 @@ class Drawing:
 
 @dataclass(frozen=True, eq=False)
 class Moving(Drawing):
-    """A picture that moves on a page of HTML, by the data that `motionView` of data/motion.js reads."""
+    """A picture that moves on a page of HTML, by data that `motionView` of data/motion.js reads; or a page in it."""
 
     data: Mapping[str, Any] = field(default_factory=dict)
+    page: str = ""
 
 
 @dataclass(frozen=True)

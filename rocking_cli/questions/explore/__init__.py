@@ -1,0 +1,3 @@
+"""Write a page that answers as motion and structure change."""
+
+PLACE = 455
