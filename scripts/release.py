@@ -21,7 +21,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import monotonic
 
-from rocking_cli.dynamics.shipped import FOR_ALL, LIBRARIES
+from rocking_cli.dynamics.shipped import FOR_ALL, FOR_PAGES, LIBRARIES
 
 PROJECT = Path(__file__).resolve().parents[1]
 DIST = PROJECT / "dist"
@@ -36,7 +36,6 @@ PLATFORMS = {
     "win32-x86_64.dll": "win_amd64",
 }
 """The platforms of a wheel with one library."""
-FOR_PAGES = "wasm.wasm"  # a library that every wheel has
 HISTORY = ["respond", "examples/block.yaml", "--record", "examples/accel.csv", "--neighbours", "0", "--json"]
 FOREIGN = {"PYTHONPATH", "PYTHONHOME", "VIRTUAL_ENV", "COLUMNS"}  # would let the checkout in, or another width
 

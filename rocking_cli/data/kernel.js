@@ -73,8 +73,8 @@ const PEAK = 0, CROSSED = 2, FIRST_UPLIFT = 3, IMPACTS = 4, ENDED = 5, SIDE = 6,
 const WHERE = 10, PASSED_PEAK = 11, PASSED_IMPACTS = 13, WARNED = 14, WARNED_PEAK = 16;
 const OVERTURNED = 1, STILL_ROCKING = 2, STALLED = 3, BOUND_REASON = 5;
 
-// The memory of the library, and calls of it.
-class Library {
+// The memory of the compiled kernels, and calls of them.
+class Compiled {
   constructor(module) {
     const env = {};
     for (const {name} of WebAssembly.Module.imports(module)) env[name] = Math[name.replace("call_", "")];
@@ -113,25 +113,24 @@ class Library {
 // One structure in the memory: answers about any number of runs under one motion.
 class Kernel {
   constructor(module, model, options) {
-    this.library = new Library(module);
+    this.compiled = new Compiled(module);
     this.model = model;
     this.options = options;
-    const put = ({values, shape}) => this.library.array(values, shape), {deck, joints} = model;
+    const put = ({values, shape}) => this.compiled.array(values, shape), {deck, joints} = model;
     this.tables = ["structures", "numbers", "forces", "smooth", "angles", "certain", "held", "corners"]
       .map(key => put(deck[key]));
     this.joints = ["sizes", "contacts", "bearing", "rows", "struck", "stopped", "within", "rest", "numbers"]
       .map(key => put(joints[key]));
     const count = Number(joints.sizes.values[1]);
-    this.memory = [[2, COLUMNS], [count, KEPT], [NOTES]].map(shape => this.library.reals(shape));
-    this.memory.push(this.library.array(new BigInt64Array(4 * count), [4 * count]));
-    this.empty = this.library.reals([0]);
-    this.aside = this.library.reals([MARKS]);
-    this.start = this.library.end;
+    this.memory = [[2, COLUMNS], [count, KEPT], [NOTES]].map(shape => this.compiled.reals(shape));
+    this.memory.push(this.compiled.array(new BigInt64Array(4 * count), [4 * count]));
+    this.aside = this.compiled.reals([MARKS]);
+    this.start = this.compiled.end;
   }
   // The marks of runs [{factor, size, slender, restitution}] under a motion {u, dt}; with `samples`, those of the last.
   run(motion, runs, mostImpacts, samples = null) {
-    const {library} = this, u = motion.u;
-    library.end = this.start;
+    const {compiled} = this, u = motion.u;
+    compiled.end = this.start;
     const ahead = new Float64Array(u.length);
     for (let k = u.length - 2, most = Math.abs(u[u.length - 1]); k >= 0; k--) ahead[k] = most = Math.max(most, Math.abs(u[k]));
     const blocks = new Float64Array(Math.ceil(u.length / BLOCK));
@@ -140,24 +139,24 @@ class Kernel {
       blocks[block] = Math.max(blocks[block], size);
       if (k % BLOCK === 0 && block) blocks[block - 1] = Math.max(blocks[block - 1], size);
     }
-    const row = values => library.array(values, [values.length]), none = {at: 0, shape: [0]};
+    const row = values => compiled.array(values, [values.length]), none = {at: 0, shape: [0]};
     const record = [0, u.length, 0, 0, 0, u.length, 0, blocks.length, motion.dt, 1];
     const rows = new Float64Array(runs.length * RUN_COLUMNS);
     runs.forEach(({factor, size = 1, slender = 1, restitution = [NaN, NaN]}, k) =>
       rows.set([0, 0, factor, Math.abs(factor), size, ...restitution, 0, slender, 0], k * RUN_COLUMNS));
-    const marks = library.reals([runs.length, MARKS]);
-    library.view(marks).fill(NaN);
-    const kept = samples ? [samples.count, samples.count, 3 * samples.impacts].map(n => library.reals([n])) : null;
+    const marks = compiled.reals([runs.length, MARKS]);
+    compiled.view(marks).fill(NaN);
+    const kept = samples ? [samples.count, samples.count, 3 * samples.impacts].map(n => compiled.reals([n])) : null;
     if (kept) kept[2].shape = [samples.impacts, 3];
     const places = [
-      {whole: 0}, {whole: runs.length}, library.array(rows, [runs.length, RUN_COLUMNS]), ...this.tables,
-      library.array(Float64Array.from(record), [1, record.length]), row(u), none, row(ahead), row(blocks), none, none,
+      {whole: 0}, {whole: runs.length}, compiled.array(rows, [runs.length, RUN_COLUMNS]), ...this.tables,
+      compiled.array(Float64Array.from(record), [1, record.length]), row(u), none, row(ahead), row(blocks), none, none,
       ...this.joints, {real: this.options.rtol}, {whole: mostImpacts}, {whole: samples ? 0 : 1},
       {whole: samples ? samples.every : 1}, ...(kept ?? [none, none, {at: 0, shape: [0, 3]}]), this.aside, marks, ...this.memory,
     ];
-    library.call("rocking_histories", places);
-    const found = library.view(marks), each = runs.map((_, k) => this.outcome(found.slice(k * MARKS, (k + 1) * MARKS)));
-    return samples ? {...each[0], phi: library.view(kept[0]).slice(), impacts: library.view(kept[2]).slice()} : each;
+    compiled.call("rocking_histories", places);
+    const found = compiled.view(marks), each = runs.map((_, k) => this.outcome(found.slice(k * MARKS, (k + 1) * MARKS)));
+    return samples ? {...each[0], phi: compiled.view(kept[0]).slice(), impacts: compiled.view(kept[2]).slice()} : each;
   }
   // The outcome of a run from its marks, as `read_marks` has it.
   outcome(marks) {
@@ -464,11 +463,11 @@ async function startEngine(data) {
   return {
     structures: ready.structures.map(({name, vary, notes}, k) => {
       const {stage, over, model} = variantOf(ready, k, null), [one, other] = model.restitution;
-      return {name, stage, vary, notes, restitution: model.restitution, over: over === "phi_cr" ? "φ/φcr" : `φ ${over}`, eta: one === other ? one : null,
-        etaMost: Math.min(model.oneSided ? 0.99 : 1, ...model.mostRestitution), reference: {positive: model.phiCr[0], negative: model.phiCr[1]}};
+      return {name, stage, vary, notes, restitution: model.restitution, over: over === "phi_cr" ? "φ/φcr" : `φ ${over}`,
+        eta: one === other ? one : null, etaMost: Math.min(model.oneSided ? 0.99 : 1, ...model.mostRestitution),
+        reference: {positive: model.phiCr[0], negative: model.phiCr[1]}};
     }),
-    stage: ({structure, value}) => variantOf(ready, structure, value).stage,
-    motion: {...ready.motion, u: undefined},
+    motion: {name: ready.motion.name},
     shapes: Object.entries(ready.pulses).map(([key, {label}]) => ({key, label})),
     all,
     history: settings => answers.history(settings),
@@ -485,8 +484,9 @@ function fileOf({name, vary}, {size, value}) {
 }
 function commandOf({structure, motion, scale, polarity, time, amplitude, period, restitution, size, slender, value}, data) {
   const texts = variantOf(data, structure, value).yaml;
-  const why = resized(texts, size) === null ? "No file describes this structure in another size: reset it." : slender !== 1 ? "No command has this width over height: reset it." : motion === "record" && time !== 1
-    ? "No command has this time scale: reset it."
+  const why = resized(texts, size) === null ? "No file describes this structure in another size: reset it."
+    : slender !== 1 ? "No command has this width over height: reset it."
+    : motion === "record" && time !== 1 ? "No command has this time scale: reset it."
     : motion === "record" && !data.command ? "The motion has no file that a command could read." : "";
   const given = data.structures[structure], end = fileOf(given, {size, value});
   const file = given.file && size === 1 && value === null ? given.file : `${end}.yaml`;

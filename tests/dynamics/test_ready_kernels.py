@@ -466,6 +466,13 @@ class TestLibrary:
         with pytest.raises(BrokenKernels, match="cannot be read"):
             shipped.load(PULSES)
 
+    @pytest.mark.parametrize("spoil", [lambda file: file.write_bytes(b"other"), lambda file: file.unlink()])
+    def test_the_one_of_pages(self, folder, spoil):
+        assert shipped.for_pages()[:4] == b"\0asm"
+        spoil(folder / shipped.FOR_PAGES)
+        with pytest.raises(BrokenKernels, match=f"{shipped.FOR_PAGES} is (damaged|missing), reinstall"):
+            shipped.for_pages()
+
     @pytest.mark.parametrize("symbol", [b"rocking_level", b"rocking_steps_v1"])
     def test_one_of_another_version(self, folder, symbol):
         """As an update that did not come to its end leaves it."""

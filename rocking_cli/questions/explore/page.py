@@ -11,10 +11,9 @@ import numpy as np
 
 from rocking_cli.core.structure_file import structure_text
 from rocking_cli.documents.figures import inline_svg
-from rocking_cli.dynamics import shipped, stepping
+from rocking_cli.dynamics import shipped
 from rocking_cli.dynamics.batch import DECISIVE_IMPACTS
 from rocking_cli.dynamics.deck import MAX_IMPACTS, lay_out
-from rocking_cli.dynamics.joints import REASONS
 from rocking_cli.dynamics.model import Model
 from rocking_cli.errors import MechanismError
 from rocking_cli.excitation.base import STANDARD_GRAVITY
@@ -53,14 +52,12 @@ def data_of(offered: Exploration) -> dict[str, Any]:
         "mostImpacts": MAX_IMPACTS,
         "decisiveImpacts": DECISIVE_IMPACTS - 1,
         "g": STANDARD_GRAVITY,
-        "reasons": REASONS,
         "leastShare": LEAST_SHARE,
         "factors": FACTORS.tolist(),
         "leastRestitution": LEAST_ETA,
         "command": offered.options,
         "motion": {
             "name": motion.name, "factor": offered.given.factor * offered.sign, "dt": motion.dt, "every": motion.every,
-            "npts": motion.npts, "pga": motion.pga_g * abs(offered.given.factor), "duration": motion.duration,
             "u": packed(motion.acceleration),
         },
         "pulses": {
@@ -167,8 +164,6 @@ def _model(model: Model) -> dict[str, Any]:
             "within": packed(joints.within, "smooth", fine) if fine else packed(joints.within),
         },
         "phiCr": list(model.phi_cr),
-        "lambdas": list(model.lambda_),
-        "gravity": model.gravity,
         "restitution": list(model.eta),
         "mostRestitution": list(model.most_eta),
         "reach": model.reach if tables is not None else None,
@@ -180,7 +175,6 @@ def _model(model: Model) -> dict[str, Any]:
         "slidesFrom": None if model.sliding is None else slides_from(model.sliding),
         "slidesAt": None if model.sliding is None else slides_at(model.sliding),
         "oneSided": model.one_sided is not None,
-        "p": float(model.numbers[:, stepping.P].max()),
     }
 
 

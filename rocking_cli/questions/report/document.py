@@ -172,6 +172,9 @@ def _below(match: re.Match[str]) -> str:
 
 def _moving(content: Assessment, result: MotionResult, bins: int, say: Language, page_of: PageOf | None) -> Moving:
     """Return the moving structure under a motion, with the charts; on paper, the plot of the response."""
+    picture = partial(draw_history, result.histories, result.motion, "", structure=content.structure)
+    if page_of is not None:
+        return Moving("", in_language(say, picture), page=page_of(result))
     best = result.histories["nonlinear"]
     film = Film(content.picture, best, result.motion, result.contacts[result.polarity].assumed_friction)
     pulses = [replace(each, sign=each.sign * result.polarity) for each in result.fits[:1] if result.file]
@@ -182,9 +185,6 @@ def _moving(content: Assessment, result: MotionResult, bins: int, say: Language,
     elif best.peak_ratio:
         moment = float(best.time[int(np.nanargmax(np.abs(best.ratio)))])
     label = f"{content.name}, as it moves under {result.given.motion.name}"
-    picture = partial(draw_history, result.histories, result.motion, "", structure=content.structure)
-    if page_of is not None:
-        return Moving("", in_language(say, picture), page=page_of(result))
     data = moving(film, charts, label=label, speed=1.0, moment=moment)
     return Moving("", in_language(say, picture), data=data if say.key == "en" else _translated(say, data))
 

@@ -15,7 +15,10 @@ from rocking_cli.views.view import heading
 
 if TYPE_CHECKING:
     from rocking_cli.io.tables import Columns
+    from rocking_cli.questions.report.document import PageOf
     from rocking_cli.questions.report.study import Assessment, MotionResult
+    from rocking_cli.structure import Structure
+    from rocking_cli.studies.neighbours import Neighbourhood
 
 
 @verb(ReportAsked)
@@ -48,9 +51,6 @@ def report(asked: ReportAsked, watch: Watcher) -> Answer[Assessment]:
     >>> answer.has_block
     True
     """
-    from rocking_cli.questions.explore.asked import options_of
-    from rocking_cli.questions.explore.page import page
-    from rocking_cli.questions.explore.study import Exploration, check
     from rocking_cli.questions.report.document import VerifiedReport, document
     from rocking_cli.questions.report.study import gather
     from rocking_cli.questions.report.view import view
@@ -68,8 +68,7 @@ def report(asked: ReportAsked, watch: Watcher) -> Answer[Assessment]:
         sheet_of(site)
         refuse(site, motions=bool(requested))
     ready = structure_of(asked.structure, watch, asked.opening, asked.restitution)
-    if asked.explore:
-        check(ready)
+    page_of = _page_of(asked, ready, around) if asked.explore else None
     source = sheets.SheetOrigin.of(asked.origin or "rocking_cli.report(...)", ready)
     title = asked.title(source.command, language)
     chosen = requested.gather(ready.growth, watch) if requested else []
@@ -88,19 +87,27 @@ def report(asked: ReportAsked, watch: Watcher) -> Answer[Assessment]:
     if asked.out is not None:
         made = sheets.sources(ready.mechanism, asked.verify, chosen, source, site)
         try:
-
-            def page_of(result: MotionResult) -> str:
-                history, options = result.runs[result.polarity]["nonlinear"], options_of(asked, result.given)
-                offered = Exploration([ready], result.given, result.polarity, around, [history], "", options)
-                return page(offered)
-
-            made_of = document(content, made, verified, language, page_of if asked.explore else None)
-            sheets.write(asked.out, made_of, watch, by_browser=True)
+            sheets.write(asked.out, document(content, made, verified, language, page_of), watch, by_browser=True)
         except RockingError as error:
             watch.unwritten(error)
     shown = view(content, verified.found if verified is not None else None, language)
     figure = drawn("plotting.structure.draw_structure", content.picture, heading(content.mechanism))
     return Answer("report", content, shown, partial(_columns, content), figure)
+
+
+def _page_of(asked: ReportAsked, ready: Structure, around: Neighbourhood) -> PageOf:
+    """Return what writes the page on a structure under one of the motions. Raises `InputError` if none can be."""
+    from rocking_cli.questions.explore.asked import options_of
+    from rocking_cli.questions.explore.page import page
+    from rocking_cli.questions.explore.study import Exploration, check
+
+    check(ready)
+
+    def written(result: MotionResult) -> str:
+        history, options = result.runs[result.polarity]["nonlinear"], options_of(asked, result.given)
+        return page(Exploration([ready], result.given, result.polarity, around, [history], "", options))
+
+    return written
 
 
 def _columns(found: Assessment) -> Columns:

@@ -12,10 +12,15 @@ import numpy as np
 import pytest
 
 import rocking_cli as rk
+from rocking_cli.core import Direction
+from rocking_cli.names import peaks_over
 from rocking_cli.questions.explore.page import SHAPES
 from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Conditions, neighbours
+from rocking_cli.studies.response import concluded
+from rocking_cli.views.conclusion import headline
 from rocking_cli.views.neighbours import neighbours_in_words
+from rocking_cli.views.verdict import SENSE, unknown_after
 from tests.browser import launch, opened
 from tests.cli.test_cli import run, run_json
 from tests.conftest import EXAMPLES
@@ -31,8 +36,9 @@ HISTORIES = """async settings => {
   await engine.all;
   const text = (_, value) => typeof value === "number" && !Number.isFinite(value) ? String(value) : value;
   return JSON.stringify(settings.map(each => {
-    const {phi, outcome, headline} = engine.history(each);
-    return {...outcome, phi: Array.from(phi), headline, command: engine.command(each), yaml: engine.yaml(each)};
+    const {phi, outcome, headline, sentences} = engine.history(each);
+    const files = {command: engine.command(each), yaml: engine.yaml(each)};
+    return {...outcome, phi: Array.from(phi), headline, sentences, ...files};
   }), text);
 }""".replace("START", ENGINE)
 ASKED = "async ([kind, settings]) => { const engine = await START; return engine[kind](settings); }".replace(
@@ -115,6 +121,13 @@ def check_histories(browser, path, structure, settings, tolerance=0.0):
         within = tolerance or (0.0 if each["motion"] == "record" else 1e-12)
         for name in FIELDS:
             assert same(float(getattr(run_, name)), found[name], within), (name, each)
+        end = concluded({1: {"nonlinear": run_}}, {})
+        assert found["headline"] == headline(end, peaks_over(run_.ends_at_limit))
+        if run_.unknown:
+            assert found["sentences"][0] == f"{unknown_after(run_)} The structure may overturn."
+        if run_.fell:
+            assert f" {SENSE[Direction(run_.fell_to)]}, at {run_.overturning_time:.4g} s" in found["sentences"][0]
+            assert f"after {len(run_.felt)} impact" in found["sentences"][0]
         phi = np.array([np.nan if value == "NaN" else value for value in found["phi"]], float)
         np.testing.assert_allclose(phi, run_.phi, rtol=within, atol=within)
 
