@@ -39,9 +39,7 @@ class Varied:
             what = (
                 f"the range must have the value in it that the file gives, {'none' if given is None else f'{given:g}'}"
             )
-            raise InputError(
-                Problem(what, field=span.field, hint=f"give {span.field}={span.low}:{span.high} around it")
-            )
+            raise InputError(Problem(what, field=span.field, hint="give a range around it"))
         whole = np.round if structure.is_whole(span.field) else np.asarray
         values = {*whole(np.linspace(low, high, VALUES)).tolist(), given}
         if len(values) > VALUES:
