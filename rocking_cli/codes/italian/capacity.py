@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
-from math import inf, pi, sqrt
+from math import inf, nan, pi, sqrt
 from operator import attrgetter
 
 import numpy as np
@@ -26,18 +26,29 @@ from rocking_cli.verification.results import Control
 
 STEPS_PER_CURVE = 256  # a curve is checked to be a function at these points only
 MAX_HALVINGS = 200
+BESIDE = 1e-3  # share of an interval by which points stand beside the zero of its chord
 PARTS = 16  # into which an interval is divided, where many points cost little more than one
 SHARE, BREAK, SEAT = "share", "break", "seat"
 """What may end the displacement capacity: the share of d0*, a break of the curve, or a lost seat."""
 
 
 def root(rises: Callable[[float], float], low: float, high: float) -> float:
-    """Return the zero of a function that is negative at `low` and positive at `high`, to rounding, by bisection."""
-    for _ in range(MAX_HALVINGS):
+    """Return the zero of a function that is negative at `low` and positive at `high`, to rounding.
+
+    Of three points one halves the interval, and the others stand a little on either side of where the chord is zero.
+    """
+    below = above = nan
+    for k in range(3 * MAX_HALVINGS):
         middle = (low + high) / 2
         if middle in (low, high):
             break
-        low, high = (middle, high) if rises(middle) < 0 else (low, middle)
+        side = (0.0, BESIDE, -BESIDE)[k % 3]
+        chord = low + (high - low) * (below / (below - above) + side) if side and below < above else nan
+        middle = chord if low < chord < high else middle
+        if (value := rises(middle)) < 0:
+            low, below = middle, value
+        else:
+            high, above = middle, value
     return high
 
 

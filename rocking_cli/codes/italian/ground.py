@@ -9,6 +9,7 @@ from math import exp, log
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rocking_cli.codes.italian.capacity import root
 from rocking_cli.codes.italian.demand import (
@@ -243,10 +244,14 @@ class Hazard:
         """Longest return period that is used [years]."""
         return min(self.table[-1][0], LONGEST_RETURN_PERIOD)
 
+    @cached_property
+    def _logarithms(self) -> Sequence[NDArray[np.float64]]:
+        return [*np.log(np.array(self.table, dtype=np.float64)).T]
+
     def parameters(self, TR: float) -> RockMotion:
         """Return the ground on rock at a return period [years], interpolated in logarithms."""
-        known = np.log(np.array(self.table, dtype=np.float64))
-        return RockMotion(*(exp(np.interp(log(TR), known[:, 0], known[:, k])) for k in (1, 2, 3)))
+        periods, *others = self._logarithms
+        return RockMotion(*(exp(np.interp(log(TR), periods, each)) for each in others))
 
     def spectrum(self, TR: float) -> GroundSpectrum:
         """Return the spectrum of the ground at a return period [years]."""

@@ -1,0 +1,531 @@
+"""The mechanisms of a building as structures: what is above a hinge of a wall, between two floors, or on top.
+
+Coordinates are those of a section: x from the middle of the wall at the hinge to the outside, y up from the hinge.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from itertools import pairwise
+from math import inf, sqrt, tan
+from typing import Any, NamedTuple
+
+import numpy as np
+from pydantic import ValidationError
+
+from rocking_cli.core import Direction, Mechanism, polygon
+from rocking_cli.core.registry import Registry
+from rocking_cli.errors import InputError
+from rocking_cli.io.field_problems import of_arguments
+from rocking_cli.questions.building.description import (
+    Bearing,
+    BellGable,
+    Building,
+    BuildingTie,
+    Gable,
+    Hole,
+    OnTop,
+    Wall,
+)
+
+STRIPS = 6  # of a gable, each with its mean length: the mass is exact, the centroid 1.4 % too low
+ARCH_STRESS, ARCH_DEPTH, ARCH_RISE = 1.5, 0.1, 0.9  # of a wall that bends as an arch [EN 1996-1-1, 6.3.2]
+MOST_SLENDER_ARCH = 20.0  # length over thickness
+MOST_ARCH_RATIO = 0.57  # g, as one rigid body of the inertia of two has at most 1/sqrt(3) as its ratio at rest
+LEAST_OVERLAP = 1e-6  # share of an overlap below which nothing of it is left
+OF_ITS_WEIGHT = 1e-9  # share of the weight of a wall; a smaller load on top is none
+
+
+class NotMade(Exception):
+    """A mechanism cannot be made of a description, or does not exist; the message says why.
+
+    Parameters
+    ----------
+    why : str
+        The reason, a clause.
+    exists : bool
+        Whether the mechanism exists all the same, and may govern.
+    """
+
+    def __init__(self, why: str, *, exists: bool = True) -> None:
+        super().__init__(why)
+        self.exists = exists
+
+
+class Strip(NamedTuple):
+    """A part of a wall of constant section: heights above the foundation, thickness and length [m], density [kg/m3]."""
+
+    low: float
+    high: float
+    thickness: float
+    length: float
+    density: float
+
+    @property
+    def mass(self) -> float:
+        """Its mass [kg]."""
+        return self.density * self.length * self.thickness * (self.high - self.low)
+
+
+@dataclass(frozen=True)
+class Made:
+    """A mechanism of a building.
+
+    Parameters
+    ----------
+    kind : str
+        "overturning", "bending", "arch", "gable", "corner", "parapet" or "bell_gable".
+    wall : str
+        The wall, or what stands on it.
+    name : str
+        Name of the structure.
+    z : float
+        Height above the foundation at which the motion of the building shakes it [m].
+    hinge : tuple of (float, float)
+        Where it begins and ends above the foundation [m].
+    mechanism : str
+        Name of the kind of structure.
+    fields : mapping
+        Its fields, as a structure file has them.
+    angle : float or None
+        Angle of the crack in crossing walls from the vertical [rad]; None without any.
+    remarks : sequence of str
+        How the description was read, a sentence each.
+    """
+
+    kind: str
+    wall: str
+    name: str
+    z: float
+    hinge: tuple[float, float]
+    mechanism: str
+    fields: Mapping[str, Any]
+    angle: float | None = None
+    remarks: Sequence[str] = ()
+
+    def structure(self) -> Mechanism:
+        """Return the structure. Raises `InputError` if its fields do not fit together."""
+        cls = _registry()[self.mechanism]
+        try:
+            return cls.from_fields({"name": self.name, **self.fields})
+        except ValidationError as error:
+            raise InputError(*of_arguments(cls, error.errors(include_url=False), self.mechanism)) from None
+
+
+@cache
+def _registry() -> Registry:
+    return Registry()
+
+
+def strips(building: Building, wall: Wall, low: float, high: float) -> list[Strip]:
+    """Return the parts of a wall between two heights [m], shortened by openings. Raises `NotMade` if one has none."""
+    levels, (foot, _) = building.levels, wall.reaches(building.count)
+    holes = [(levels[each.storey - 1] + each.z, each) for each in wall.openings]
+    cuts = {low, high, *(z for z in levels if low < z < high)}
+    cuts |= {z for at, each in holes for z in (at, at + each.height) if low < z < high}
+    parts = list[Strip]()
+    for a, b in pairwise(sorted(cuts)):
+        middle = (a + b) / 2
+        storey = max(foot + 1, min(int(np.searchsorted(levels, middle)), wall.reaches(building.count)[1]))
+        length = wall.length - sum(each.width for at, each in holes if at < middle < at + each.height)
+        if length <= 0:
+            raise NotMade(f"openings leave nothing of it at {middle:.4g} m")
+        part = Strip(a, b, wall.thick(storey), length, wall.density or building.masonry.density)
+        alike = parts and parts[-1][2:] == part[2:]
+        parts = [*parts[:-1], parts[-1]._replace(high=b)] if alike else [*parts, part]
+    return parts
+
+
+def _rounded(value: float) -> float:
+    """Return a coordinate in tenths of a millimetre, so that files are readable; it changes nothing that is known."""
+    return round(value, 4) + 0.0
+
+
+def _rectangle(x0: float, x1: float, y0: float, y1: float) -> list[list[float]]:
+    return [[_rounded(x), _rounded(y)] for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
+
+
+def _body(parts: Sequence[Strip], z: float, wedges: Sequence[Mapping[str, Any]] = ()) -> tuple[str, dict[str, Any]]:
+    """Return the kind of structure and the fields of what stands above a hinge, with its outer faces flush."""
+    first, top = parts[0], parts[-1].high - z
+    depth = max(each.length for each in parts)
+    if len(parts) == 1 and not wedges:
+        fields = {"width": first.thickness, "height": _rounded(top), "depth": first.length, "density": first.density}
+        return "block", fields
+    outer = first.thickness / 2
+    plates = list[dict[str, Any]]()
+    for each in parts:
+        corners = _rectangle(outer - each.thickness, outer, each.low - z, each.high - z)
+        own = {"density": each.density} if each.density != first.density else {}
+        plates.append({"polygon": corners, "depth": _rounded(each.length), **own})
+    return "rigid_body", {"parts": [*plates, *wedges], "density": first.density, "depth": depth}
+
+
+def _seats(building: Building, wall: Wall, low: float) -> list[tuple[str, float, Bearing]]:
+    """Return name, height and floor of what bears on a wall above a height [m]."""
+    of = [(name, building.levels[level], each) for name, level, each in building.bearing if wall.name in each.walls]
+    return [each for each in of if low < each[1]]
+
+
+def _inner(building: Building, wall: Wall, z: float, outer: float) -> float:
+    """Return x of the inner face just below a height [m]."""
+    storey = int(np.searchsorted(building.levels, z))
+    return outer - wall.thick(max(storey, wall.reaches(building.count)[0] + 1))
+
+
+def _loads(building: Building, wall: Wall, z: float, outer: float, depth: float) -> list[dict[str, Any]]:
+    """Return the loads of floors and roof above a hinge: where they bear, a third of the seat from the inner face."""
+    loads = list[dict[str, Any]]()
+    for name, height, each in _seats(building, wall, z):
+        inner = _inner(building, wall, height, outer)
+        x = inner + each.seat / 3 if each.seat is not None else (inner + outer) / 2
+        at = [_rounded(x), _rounded(height - z)]
+        mass = each.load if depth == wall.length else each.load * wall.length / depth
+        load = {"name": name, "mass_per_area": mass, "span": each.span, "at": at}
+        load |= {"floor": "sliding" if each.sliding else "borne"}
+        loads.append(load | ({"seat": each.seat} if each.seat is not None else {}))
+        if each.thrust:
+            push = [each.thrust * wall.length / depth, 0.0]
+            loads.append({"name": f"thrust of {name}", "force_per_metre": push, "at": at})
+    return loads
+
+
+def tie_height(building: Building, tie: BuildingTie) -> float:
+    """Return the height of ties above the foundation [m]."""
+    return building.levels[tie.level] - tie.below
+
+
+def _ties(building: Building, wall: Wall, z: float, outer: float) -> list[dict[str, Any]]:
+    """Return the ties of a wall above a hinge."""
+    ties, names = list[dict[str, Any]](), [each.name for each in building.ties]
+    for each in building.ties:
+        y = tie_height(building, each)
+        if wall.name not in each.walls or y <= z:
+            continue
+        inner, m = _inner(building, wall, y, outer), building.masonry
+        given = each.model_dump(exclude_unset=True, by_alias=True)
+        own = {key: value for key, value in given.items() if key not in ("name", "level", "below", "walls", "length")}
+        if each.plate is not None:
+            bearing = {"thickness": _rounded(outer - inner), "compression": m.compression, "shear": m.shear,
+                       "gamma": m.gamma, "source": m.source}  # fmt: skip
+            own["wall"] = {key: value for key, value in bearing.items() if value is not None}
+        name = each.name if names.count(each.name) == 1 else f"{each.name} at level {each.level}"
+        ends = {"from": {"ground": [_rounded(inner - each.length), _rounded(y - z)]},
+                "to": {"at": [_rounded(inner), _rounded(y - z)]}}  # fmt: skip
+        ties.append({"name": name, **ends, **own})
+    return ties
+
+
+def _sides(
+    building: Building, wall: Wall, z: float, high: float, angle: float
+) -> tuple[list[dict[str, Any]], dict[str, Any] | None]:
+    """Return the wedges of side walls that come along, cracked at an angle [rad], and the friction of their courses.
+
+    A crack at an angle leaves l - h_b tan(angle) of each overlap, on which courses rub [C8.7.1.2 for a vertical crack].
+    """
+    courses = building.interlock
+    if wall.connection != "interlock" or courses is None:
+        return [], None
+    crossing = list[tuple[float, float, float]]()  # height above the hinge, thickness, density
+    reach = courses.reach or inf
+    for side in map(building.wall.__getitem__, wall.sides):
+        low, top = side.reaches(building.count)
+        height = min(building.levels[top], high) - z
+        if height > 0 and building.levels[low] <= z:
+            crossing.append((height, side.thick(_storey(building, side, z)), side.density or building.masonry.density))
+            reach = min(reach, side.length)
+    inner, slope, wedges = -wall.thick(_storey(building, wall, z)) / 2, tan(angle), list[dict[str, Any]]()
+    for foot, head in pairwise(sorted({0.0, *(height for height, _, _ in crossing)})) if slope else ():
+        along = [(thick, density) for height, thick, density in crossing if height >= head]
+        depth = sum(thick for thick, _ in along)
+        bend = min(max(reach / slope, foot), head)  # above it the side walls have no more
+        back = [[inner - min(y * slope, reach), y] for y in (head, bend, foot)]
+        corners = [[_rounded(x), _rounded(y)] for x, y in ((inner, foot), (inner, head), *back)]
+        distinct = [each for k, each in enumerate(corners) if each != corners[k - 1]]
+        density = sum(thick * density for thick, density in along) / depth
+        wedges.append({"polygon": distinct, "depth": depth, "density": density})
+    left = courses.overlap - courses.course * slope
+    rows = int(round((high - z) / courses.course, 6))
+    if not crossing or left <= LEAST_OVERLAP * courses.overlap or rows < 1:
+        return wedges, None
+    thickness = sum(thick for _, thick, _ in crossing) / len(crossing)
+    friction = {"courses": rows, "overlap": round(left, 6), "thickness": thickness, "walls": len(crossing),
+                "friction": courses.friction, "height": _rounded(rows * courses.course),
+                "density": building.masonry.density}  # fmt: skip
+    return wedges, friction
+
+
+def _storey(building: Building, wall: Wall, z: float) -> int:
+    """Return the storey of a wall at and above a height; below it its first."""
+    return max(wall.reaches(building.count)[0] + 1, bisect_right(building.levels, z))
+
+
+def overturning(building: Building, wall: Wall, z: float, angle: float | None = None, *, gable: bool = True) -> Made:
+    """Return a wall that overturns about a hinge at a height [m], with what stands on it and what comes along.
+
+    Parameters
+    ----------
+    building, wall : Building, Wall
+    z : float
+        Height of the hinge above the foundation [m].
+    angle : float, optional
+        Angle of the crack in side walls that interlock with it [rad]; by default that of the file.
+    gable : bool
+        Whether its gable turns with it; otherwise it has fallen before.
+
+    Raises
+    ------
+    NotMade
+        If nothing is left of it at some height.
+    """
+    top = building.levels[wall.reaches(building.count)[1]]
+    parts = [*strips(building, wall, z, top), *_on_top(building, wall, gable=gable)]
+    crack = angle if angle is not None else _given_angle(building)
+    wedges, friction = _sides(building, wall, z, top, crack)
+    kind, fields = _body(parts, z, wedges)
+    outer = parts[0].thickness / 2
+    depth = fields["depth"]
+    fields |= {"one_sided": "positive"} | ({"rebound": building.rebound} if building.rebound is not None else {})
+    fields |= {key: value for key, value in (
+        ("loads", _loads(building, wall, z, outer, depth)), ("ties", _ties(building, wall, z, outer)),
+        ("interlock", friction), ("crushing", _crushing(building)), ("unusual", building.unusual),
+    ) if value}  # fmt: skip
+    held = friction is not None or bool(wedges)
+    without = " without its gable" if not gable and any(each.wall == wall.name for each in building.gables) else ""
+    name = f"{wall.name}: overturning{without} about {z:.4g} m"
+    hinge = z, max(each.high for each in parts)
+    return Made("overturning", wall.name, name, z, hinge, kind, fields, crack if held else None)
+
+
+def _given_angle(building: Building) -> float:
+    angle = building.interlock.angle if building.interlock is not None else 0.0
+    return float(np.radians(angle)) if isinstance(angle, float | int) else 0.0
+
+
+def _crushing(building: Building) -> dict[str, float] | None:
+    strength = building.masonry.crushing
+    return None if strength is None else {"strength": strength}
+
+
+def held_levels(building: Building, wall: Wall) -> list[int]:
+    """Return the levels at which a wall is held sideways: its foot, floors that do not slide, and ties."""
+    foot, top = wall.reaches(building.count)
+    floors = {level for _, level, each in building.bearing if wall.name in each.walls and not each.sliding}
+    ties = {each.level for each in building.ties if wall.name in each.walls}
+    return [foot, *sorted(level for level in floors | ties if foot < level <= top)]
+
+
+def bending(building: Building, wall: Wall, foot: int, top: int) -> Made:
+    """Return a wall that bends vertically between two levels that hold it, under what stands above.
+
+    Raises
+    ------
+    NotMade
+        If it has two thicknesses between them, bears a floor there, or has no load on top.
+    """
+    low, high = building.levels[foot], building.levels[top]
+    parts = strips(building, wall, low, high)
+    if len({each.thickness for each in parts}) > 1:
+        raise NotMade("its thickness changes between the levels that hold it, and a wall between floors has one")
+    between = [name for name, z, _ in _seats(building, wall, low) if z < high]
+    if between:
+        raise NotMade(f"it bears {', '.join(between)} between the levels that hold it, and slides below")
+    thickness, outer, g = parts[0].thickness, parts[0].thickness / 2, 9.80665
+    above = building.levels[wall.reaches(building.count)[1]]
+    weights = [
+        (g * each.mass, outer - each.thickness / 2)
+        for each in [*(strips(building, wall, high, above) if above > high else ()), *_on_top(building, wall)]
+    ]
+    for _, z, each in _seats(building, wall, low):
+        inner = _inner(building, wall, z, outer)
+        x = inner + each.seat / 3 if each.seat is not None else (inner + outer) / 2
+        weights.append((g * each.load * each.span * wall.length / 2, x))
+    load = sum(weight for weight, _ in weights)
+    mass = sum(each.mass for each in parts)
+    if load <= OF_ITS_WEIGHT * g * mass:
+        raise NotMade("nothing stands on it, so that it does not hinge there: it overturns", exists=False)
+    x = sum(weight * at for weight, at in weights) / load
+    fields = {"thickness": thickness, "height": _rounded(high - low), "hinge": "weakest", "overburden": round(load, 1),
+              "overburden_eccentricity": _rounded(x), "depth": wall.length,
+              "density": round(mass / (thickness * (high - low) * wall.length), 4)}  # fmt: skip
+    fields |= {"unusual": building.unusual} if building.unusual else {}
+    name = f"{wall.name}: bending between {low:.4g} and {high:.4g} m"
+    if (crushing := _crushing(building)) is not None:  # the weakest hinge is that of pivots on the faces
+        free: Any = _registry()["spanning_wall"].from_fields(fields)
+        weaker = min(Direction, key=free.uplift)
+        fields |= {"hinge": round(free.hinges(weaker)[1].imag / (high - low), 6), "crushing": crushing}
+    return Made("bending", wall.name, name, (low + high) / 2, (low, high), "spanning_wall", fields)
+
+
+def _on_top(building: Building, wall: Wall, *, gable: bool = True) -> list[Strip]:
+    """Return the parts of what stands on a wall."""
+    parts, foot = list[Strip](), building.levels[wall.reaches(building.count)[1]]
+    for each in (*(building.gables if gable else ()), *building.parapets, *building.bell_gables):
+        if each.wall == wall.name:
+            parts += _parts(building, each, foot)
+    return parts
+
+
+def _parts(building: Building, each: OnTop, low: float) -> list[Strip]:
+    """Return the parts of what stands on a wall, of a gable those above a height [m]."""
+    wall = building.wall[each.wall]
+    top = wall.reaches(building.count)[1]
+    foot, thickness, length = building.levels[top], each.thickness or wall.thick(top), each.length or wall.length
+    density = each.density or wall.density or building.masonry.density
+    if isinstance(each, Gable):
+        ends = np.linspace(low, foot + each.height, STRIPS + 1).tolist()
+        shares = [1 - ((a + b) / 2 - foot) / each.height for a, b in pairwise(ends)]
+        return [Strip(a, b, thickness, length * k, density) for (a, b), k in zip(pairwise(ends), shares, strict=True)]
+    return _pierced(Strip(foot, foot + each.height, thickness, length, density), getattr(each, "openings", []))
+
+
+def arch(building: Building, wall: Wall) -> Made:
+    """Return the top storey of a wall that bends horizontally, as an arch in its thickness between what confines it.
+
+    The thrust of an arch of three hinges, each of a tenth of the thickness at 1.5 times the strength, has the arm
+    0.9 t [EN 1996-1-1, 6.3.2]: 8 N r/(w L^2) = f t/(gamma L^2) nearly. It decreases with the arm, to zero at 0.9 t.
+
+    Raises
+    ------
+    NotMade
+        If its thrust is not resisted, its strength not known, or it has openings or is too slender for the formula.
+    """
+    top = wall.reaches(building.count)[1]
+    low, high = building.levels[top - 1], building.levels[top]
+    confined, strength = wall.confined, building.masonry.compression
+    if confined is None:
+        raise NotMade("nothing is named that resists the thrust of its arch (`confined`)", exists=False)
+    if strength is None:
+        raise NotMade("`compression` of the masonry is not given, on which its arch depends", exists=False)
+    if any(each.storey == top for each in wall.openings):
+        raise NotMade("openings interrupt its arch in the top storey", exists=False)
+    t, span, height = wall.thick(top), confined.length or wall.length, high - low
+    if span > MOST_SLENDER_ARCH * t:
+        what = f"its length of {span:.4g} m is over {MOST_SLENDER_ARCH:g} times its thickness: no arch is counted"
+        raise NotMade(what, exists=False)
+    gamma = building.masonry.gamma or 1.0
+    thrust = ARCH_STRESS * ARCH_DEPTH * strength / gamma * t * height
+    if thrust > confined.resistance:
+        what = f"its arch has a thrust of {thrust / 1e3:.4g} kN, and its ends resist {confined.resistance / 1e3:.4g} kN"
+        raise NotMade(f"{what}: it would spread them", exists=False)
+    density = wall.density or building.masonry.density
+    mass, rise = density * t * height * span, ARCH_RISE * t
+    ratio = 8 * thrust * rise / (mass * 9.80665 * span)
+    remarks = [] if ratio <= MOST_ARCH_RATIO else [f"its arch is stronger, {ratio:.3g} g, than is counted here"]
+    ratio = min(ratio, MOST_ARCH_RATIO)
+    # Both halves turn by phi: the middle moves by phi L/2, and their mass by half of it on average.
+    fields = {"points": [[0.0, round(ratio, 6)], [_rounded(rise), 0.0]], "control_height": span / 2,
+              "centroid_height": span / 4, "mass": round(mass, 3),
+              "inertia": round(mass * span**2 / 12, 3)}  # fmt: skip
+    name = f"{wall.name}: horizontal arch above {low:.4g} m"
+    return Made("arch", wall.name, name, (low + high) / 2, (low, high), "curve", fields, remarks=remarks)
+
+
+def standing(building: Building, each: OnTop, z: float | None = None) -> Made:
+    """Return what stands on a wall as it turns about its foot, or a gable about a higher hinge at `z` [m].
+
+    Raises
+    ------
+    NotMade
+        If openings leave nothing of it at some height.
+    """
+    foot = building.levels[building.wall[each.wall].reaches(building.count)[1]]
+    low = foot if z is None else z
+    parts = _parts(building, each, low)
+    kind, fields = _body(parts, low)
+    if isinstance(each, Gable):  # the roof behind it holds it
+        fields |= {"one_sided": "positive"} | ({"rebound": building.rebound} if building.rebound is not None else {})
+    elif kind == "block":
+        fields["plane"] = "width"
+    if isinstance(each, BellGable) and each.bells is not None:
+        fields["loads"] = [{"name": "bells", "mass": each.bells, "at": [0.0, each.bells_height]}]
+    fields |= {key: value for key, value in (("crushing", _crushing(building)), ("unusual", building.unusual)) if value}
+    what = {"Gable": "gable", "BellGable": "bell gable"}.get(type(each).__name__, "parapet")
+    name = f"{each.name or f'{what} on {each.wall}'}: overturning about {low:.4g} m"
+    height = min(low, building.height)  # above the last level the motion is that of its top
+    return Made(what.replace(" ", "_"), each.wall, name, height, (low, foot + each.height), kind, fields)
+
+
+def _pierced(whole: Strip, openings: Sequence[Hole]) -> list[Strip]:
+    """Return the parts of what stands on a wall, shortened by openings. Raises `NotMade` if nothing is left of one."""
+    edges = {whole.low + z for each in openings for z in (each.z, each.z + each.height)}
+    parts = []
+    for a, b in pairwise(sorted({whole.low, whole.high, *(z for z in edges if whole.low < z < whole.high)})):
+        taken = sum(e.width for e in openings if whole.low + e.z < (a + b) / 2 < whole.low + e.z + e.height)
+        if taken >= whole.length:
+            raise NotMade(f"openings leave nothing of it at {(a + b) / 2:.4g} m")
+        parts.append(whole._replace(low=a, high=b, length=whole.length - taken))
+    return parts
+
+
+def corner(building: Building, k: int, z: float, angle: float) -> Made:
+    """Return a corner that turns outwards along its diagonal about a height [m], by cracks at an angle [rad].
+
+    The plane is that of the diagonal, x = 0 at the outer edge. Where the walls meet is a column; of each wall the wedge
+    behind the crack comes along, and its courses rub on what is left of their overlap, against the motion. A point at s
+    along a wall and d into it is at x = -(s + d)/sqrt(2).
+    """
+    given = building.corners[k]
+    walls, courses = [building.wall[name] for name in given.walls], building.interlock
+    assert courses is not None  # a corner without interlock was refused
+    top = min(building.levels[each.reaches(building.count)[1]] for each in walls)
+    height, slope = top - z, tan(angle)
+    a, b = (each.thick(_storey(building, each, z)) for each in walls)
+    densities = [each.density or building.masonry.density for each in walls]
+    size = (a + b) / sqrt(2)
+    mass = a * b * height * sum(densities) / 2
+    pieces = [(mass, complex(-size / 2, height / 2), mass * ((a**2 + b**2) / 24 + height**2 / 12))]
+    loads, furthest = list[dict[str, Any]](), size
+    for wall, t, other, density in zip(walls, (a, b), (b, a), densities, strict=True):
+        reach = min(wall.length, courses.reach or wall.length) - other
+        if slope and reach > 0:
+            corners = [0j, complex(0, height), complex(-min(height * slope, reach), height)]
+            corners += [complex(-reach, reach / slope)] * (height * slope > reach)
+            wedge = polygon("wedge", 1.0, [complex(each.real / sqrt(2), each.imag) for each in corners])
+            mass = density * t * abs(sum((p.conjugate() * q).imag for p, q in pairwise([*corners, corners[0]]))) / 2
+            centroid = wedge.centroid - (other + t / 2) / sqrt(2)
+            pieces.append((mass, centroid, mass * (wedge.inertia + t**2 / 24)))
+            furthest = max(furthest, (other + t + min(height * slope, reach)) / sqrt(2))
+        for name, level, each in _seats(building, wall, z):
+            along = other + max(min((level - z) * slope, reach), 0.0)
+            x = -(along / 2 + t - (each.seat / 3 if each.seat is not None else t / 2)) / sqrt(2)
+            place = [_rounded(x), _rounded(level - z)]
+            load = {"name": f"{name} on {wall.name}", "mass": round(each.load * each.span * along, 3), "at": place}
+            load |= {"floor": "sliding" if each.sliding else "borne"}
+            loads.append(load | ({"seat": each.seat} if each.seat is not None else {}))
+            if each.thrust:
+                push = round(each.thrust * along / sqrt(2), 3)
+                loads.append({"name": f"thrust of {name} on {wall.name}", "force": [push, 0.0], "at": place})
+    if given.thrust:
+        place = [_rounded(-size / 2), _rounded(height)]
+        loads.append({"name": "hip rafter", "force": [given.thrust, 0.0], "at": place})
+    whole = sum(mass for mass, _, _ in pieces)
+    centroid = sum(mass * at for mass, at, _ in pieces) / whole
+    inertia = sum(own + mass * abs(at - centroid) ** 2 for mass, at, own in pieces)
+    fields: dict[str, Any] = {
+        "mass": round(whole, 3), "inertia": round(inertia, 3),
+        "centroid": [_rounded(centroid.real), _rounded(centroid.imag)],
+        "left_foot": [_rounded(-size), 0.0], "right_foot": [0.0, 0.0],
+        "polygon": [[_rounded(x), _rounded(y)] for x, y in ((-size, 0), (0, 0), (0, height), (-furthest, height))],
+        "one_sided": "positive",
+    }  # fmt: skip
+    left, rows = courses.overlap - courses.course * slope, int(round(height / courses.course, 6))
+    if left > LEAST_OVERLAP * courses.overlap and rows >= 1:
+        fields["interlock"] = {
+            "courses": rows, "overlap": round(left, 6), "thickness": (a + b) / 2, "walls": 2,
+            "friction": courses.friction, "height": _rounded(rows * courses.course), "density": sum(densities) / 2,
+        }  # fmt: skip
+    fields |= {key: value for key, value in (
+        ("loads", loads), ("rebound", building.rebound), ("unusual", building.unusual),
+    ) if value}  # fmt: skip
+    name = f"{given.name or 'corner of ' + ' and '.join(given.walls)}: overturning about {z:.4g} m"
+    return Made("corner", given.walls[0], name, z, (z, top), "rigid_body", fields, angle)
+
+
+def with_bars(building: Building, level: int, diameter: float) -> Building:
+    """Return the building with bars of another diameter [m] in the ties of a level."""
+    ties = [each.model_copy(update={"diameter": diameter}) if each.level == level else each for each in building.ties]
+    return building.model_copy(update={"ties": ties})

@@ -1,0 +1,404 @@
+"""All mechanisms of a building, verified: weakest hinges and cracks are searched, and the one that governs is named."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from itertools import pairwise, product
+from math import inf, isnan, nan, radians
+from typing import Any, get_args
+
+import numpy as np
+
+from rocking_cli.core.hung.ties import BAR_DIAMETERS
+from rocking_cli.dynamics.parallel import in_processes
+from rocking_cli.errors import InputError, MechanismError, Problem, SolverError
+from rocking_cli.questions.building import made as making
+from rocking_cli.questions.building.description import Building, Wall
+from rocking_cli.questions.building.made import Made, NotMade
+from rocking_cli.short_repr import short_repr
+from rocking_cli.structure import Structure
+from rocking_cli.studies.conclusion import Concluded, Conclusion, severity
+from rocking_cli.verification.check import verify, with_histories
+from rocking_cli.verification.code import SiteFile
+from rocking_cli.verification.results import Histories, Verification
+
+COARSE, REFINED = 4, 8  # intervals of a search in which the least is looked for, and evaluations in the best of them
+PERIOD_FACTOR = 0.05  # C1 of T1 = C1 H^(3/4), H in m
+LENGTHENED, DAMPING, LATER_DAMPING = 1.75, 0.05, 0.10  # T1 at SLV over that at SLD, and damping ratios
+LEAST_REST = 0.05  # share of the last storey above the highest hinge that is tried
+LEAST_GABLE = 0.2  # the same of a gable
+LEVEL_HEIGHT = 0.01  # m; a weakest hinge this near a level is that of the level
+LOWER = 1e-3  # share by which a hinge between levels must be weaker to be listed beside them
+
+
+@short_repr
+@dataclass(frozen=True, eq=False)
+class Found:
+    """A mechanism of a building with its verification.
+
+    Parameters
+    ----------
+    made : Made
+        How it was made.
+    structure : Structure
+        The structure.
+    verification : Verification
+        Its verification, at the height of its hinge.
+    """
+
+    made: Made
+    structure: Structure
+    verification: Verification
+
+    @property
+    def conclusion(self) -> Conclusion:
+        """The conclusion of its verification."""
+        return self.verification.conclusion
+
+    @property
+    def ratio(self) -> float:
+        """Capacity over demand; NaN if it is not known."""
+        ratio = self.conclusion.ratio
+        return nan if ratio is None else ratio
+
+
+@short_repr
+@dataclass(frozen=True)
+class LeftOutMechanism:
+    """A mechanism that was not verified: its name, why, and whether it could govern."""
+
+    name: str
+    why: str
+    open: bool = False
+
+
+@short_repr
+@dataclass(frozen=True, eq=False)
+class Assessed:
+    """A building with all its mechanisms.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    site : SiteFile
+        Its site, without a floor.
+    rows : sequence of Found
+        The mechanisms, the worst first.
+    left_out : sequence of LeftOutMechanism
+        Mechanisms that were not verified.
+    period : float
+        The first period of the undamaged building [s].
+    period_given : bool
+        Whether the file gives it.
+    shaken : sequence of str
+        Names of the mechanisms that were verified by histories too.
+    strengthened : Assessed, optional
+        The strengthened building, with which this one is compared.
+    """
+
+    building: Building
+    site: SiteFile
+    rows: Sequence[Found]
+    left_out: Sequence[LeftOutMechanism]
+    period: float
+    period_given: bool
+    shaken: Sequence[str] = ()
+    strengthened: Assessed | None = None
+
+    @property
+    def governs(self) -> Found:
+        """The mechanism that governs."""
+        return self.rows[0]
+
+    @property
+    def conclusion(self) -> Conclusion:
+        """The conclusion on the building: that of the worst mechanism; not checked if one that could govern is open."""
+        end = self.governs.conclusion
+        fine = end.concluded in (Concluded.SATISFIED, Concluded.SATISFIED_IF)
+        return replace(end, concluded=Concluded.NOT_CHECKED) if fine and any(e.open for e in self.left_out) else end
+
+
+def floor_of(building: Building, site: SiteFile, z: float) -> SiteFile:
+    """Return the site of what is shaken at a height above the foundation [m]: the ground, or the building's motion.
+
+    A `floor` of the site is used with this height; otherwise T1 is that of the building, and longer at SLV and SLC.
+    """
+    if z <= 0:
+        return replace(site, site=site.site.model_copy(update={"floor": None}))
+    fields, given = type(site.site).model_fields, getattr(site.site, "floor", None)
+    if "floor" not in fields:
+        raise InputError(Problem(f"{site.site.code} does not know floors of a building", site.document.file))
+    if given is not None:
+        floor = given.model_copy(update={"z": min(z, given.H)})
+        return replace(site, site=site.site.model_copy(update={"floor": floor}))
+    period = first_period(building)
+    later = {"T1": LENGTHENED * period, "xi1": LATER_DAMPING}
+    floor = {"z": float(z), "H": float(building.height), "n": building.count, **later,
+             "SLD": {"T1": period, "xi1": DAMPING}, "SLC": later}  # fmt: skip
+    (kind, _) = get_args(fields["floor"].annotation)
+    return replace(site, site=site.site.model_copy(update={"floor": kind.model_validate(floor)}))
+
+
+def first_period(building: Building) -> float:
+    """Return T1 of the undamaged building [s]: as given, or 0.05 H^(3/4) of the height above its foundation."""
+    return building.T1 or PERIOD_FACTOR * (building.height - building.levels[0]) ** 0.75
+
+
+@dataclass(frozen=True)
+class Search:
+    """The mechanisms of a building at a site."""
+
+    building: Building
+    site: SiteFile
+
+    def verified(self, made: Made) -> Found:
+        """Return a mechanism with its verification. Raises `InputError` or `MechanismError`."""
+        structure = Structure(made.structure())
+        return Found(made, structure, verify(structure, floor_of(self.building, self.site, made.z)))
+
+    def ratio(self, made: Made) -> float:
+        """Return capacity over demand of a mechanism; infinite if it cannot be verified."""
+        try:
+            ratio = self.verified(made).verification.ratio
+        except (InputError, MechanismError, SolverError):
+            return inf
+        return inf if isnan(ratio) else ratio
+
+    def weakest(
+        self, make: Callable[..., Made], *bounds: tuple[float, float], known: float | None = None
+    ) -> tuple[float, ...]:
+        """Return the arguments within bounds at which a mechanism has its least ratio: a grid, then a search.
+
+        The search is in the cells around the least of the grid; what is lower by less than `LOWER` is not looked for.
+        `known` is the ratio at the lower bounds.
+        """
+        from scipy.optimize import minimize, minimize_scalar
+
+        def at(*arguments: float) -> float:
+            try:
+                return self.ratio(make(*arguments))
+            except NotMade:
+                return inf
+
+        axes = [np.linspace(*each, COARSE + 1).tolist() for each in bounds]
+        values = {place: at(*place) for place in [*product(*axes)][known is not None :]}
+        if known is not None:  # at the lower ends
+            values[tuple(low for low, _ in bounds)] = known
+        best = min(values, key=lambda place: (float(f"{values[place]:.9g}"), place))
+        if values[best] == inf:
+            return best
+        if len(bounds) == 1:
+            (x,), ((low, high),) = best, bounds
+            step = (high - low) / COARSE
+            if x in (low, high):  # a lower value beside an end shows at once
+                beside = x + step / 8 if x == low else x - step / 8
+                if not at(beside) < values[best] * (1 - LOWER):
+                    return best
+            ends = max(low, x - step), min(high, x + step)
+            stops = {"maxiter": REFINED, "xatol": 0.01 * step}
+            found = minimize_scalar(at, bounds=ends, method="bounded", options=stops)
+            refined: tuple[float, ...] = (float(found.x),)
+        else:
+            stops = {"maxfev": REFINED * len(bounds), "xatol": 1e-3, "fatol": 1e-4}
+            found = minimize(lambda x: at(*x), best, method="Nelder-Mead", bounds=bounds, options=stops)
+            refined = tuple(map(float, found.x))
+        return refined if float(found.fun) < values[best] * (1 - LOWER) else best
+
+    def of_wall(self, wall: Wall) -> Iterator[Found | LeftOutMechanism]:
+        """Yield the mechanisms of a wall."""
+        building = self.building
+        foot, top = wall.reaches(building.count)
+        for level in range(foot, top):
+            yield from self._overturning(wall, level, is_last=level + 1 == top)
+        for low, high in pairwise(making.held_levels(building, wall)):
+            name = f"{wall.name}: bending between {building.levels[low]:.4g} and {building.levels[high]:.4g} m"
+            yield from self._one(partial(making.bending, building, wall, low, high), name)
+        yield from self._one(partial(making.arch, building, wall), f"{wall.name}: horizontal arch")
+
+    def _overturning(self, wall: Wall, level: int, *, is_last: bool) -> Iterator[Found | LeftOutMechanism]:
+        """Yield a wall that overturns about a level, also without its gable, and about a weaker hinge above it."""
+        building, courses = self.building, self.building.interlock
+        low, high = building.levels[level : level + 2]
+        has_gable = any(each.wall == wall.name for each in building.gables)
+        crack = list[tuple[float, float]]()
+        if wall.connection == "interlock" and courses is not None and courses.angle == "weakest":
+            crack = [(0.0, courses.steepest)]
+        about = partial(making.overturning, building, wall)
+        at_level: tuple[float, ...] = self.weakest(partial(about, low), *crack) if crack else ()
+        of_level = yield from self._one(partial(about, low, *at_level))
+        if has_gable:
+            yield from self._one(partial(about, low, *at_level, gable=False))
+        end = high - LEAST_REST * (high - low) if is_last and not has_gable else high
+        known = of_level.ratio if of_level is not None and not crack else None
+        z, *angle = self.weakest(about, (low, end), *crack, known=known)
+        z = round(z, 3)
+        between = z > low + LEVEL_HEIGHT and (z < high - LEVEL_HEIGHT or (is_last and not has_gable))
+        if between and (of_level is None or self.ratio(about(z, *angle)) < (1 - LOWER) * of_level.ratio):
+            yield from self._one(partial(about, z, *angle))
+
+    def of_others(self) -> Iterator[Found | LeftOutMechanism]:
+        """Yield the mechanisms of what stands on walls, and of corners."""
+        building = self.building
+        for each in (*building.gables, *building.parapets, *building.bell_gables):
+            about = partial(making.standing, building, each)
+            at_foot = yield from self._one(about)
+            if each in building.gables and at_foot is not None:
+                low, high = at_foot.made.hinge
+                (z,) = self.weakest(about, (low, high - LEAST_GABLE * (high - low)), known=at_foot.ratio)
+                if z > low + LEVEL_HEIGHT:
+                    yield from self._one(partial(about, round(z, 3)))
+        for k, given in enumerate(building.corners):
+            courses = building.interlock
+            assert courses is not None  # a corner without was refused
+            walls = [building.wall[name].reaches(building.count) for name in given.walls]
+            for level in range(max(foot for foot, _ in walls), min(top for _, top in walls)):
+                turned = partial(making.corner, building, k, building.levels[level])
+                if courses.angle == "weakest":
+                    yield from self._one(partial(turned, *self.weakest(turned, (0.0, courses.steepest))))
+                else:
+                    yield from self._one(partial(turned, radians(courses.angle)))
+
+    def _one(self, make: Callable[[], Made], name: str = "") -> Any:
+        """Yield a mechanism with its verification, or why there is none; return it, or None."""
+        try:
+            made = make()
+        except NotMade as why:
+            yield LeftOutMechanism(name, str(why), why.exists)
+            return None
+        try:
+            found = self.verified(made)
+        except (InputError, MechanismError, SolverError) as error:
+            yield LeftOutMechanism(made.name, str(error), open=True)
+            return None
+        yield found
+        return found
+
+
+def mechanisms(search: Search, first: int, stop: int) -> list[Found | LeftOutMechanism]:
+    """Return the mechanisms of some walls; of those after the last wall, those of corners and what stands on walls."""
+    walls = search.building.walls
+    tasks = [search.of_wall(wall) for wall in walls[first:stop]] + [search.of_others()] * (stop > len(walls))
+    return [each for task in tasks for each in task]
+
+
+def assess(
+    building: Building, site: SiteFile, *, processes: int | None = None, progress: Callable[[int], object] = int
+) -> Assessed:
+    """Verify all mechanisms of a building.
+
+    Parameters
+    ----------
+    building : Building
+        The building.
+    site : SiteFile
+        Its site; a `floor` gives the period of the building, in place of that of the building.
+    processes : int, optional
+        Number of processes that share the walls; by default this one alone.
+    progress : callable, optional
+        Called with the number of walls done since the last call; corners and what stands on walls count as one.
+
+    Raises
+    ------
+    InputError
+        If no mechanism can be verified, with the reason of the first.
+    """
+    search, count = Search(building, site), len(building.walls) + 1
+    parts: dict[int, list[Found | LeftOutMechanism]] = {}
+    if processes is not None:
+        for first, part in in_processes(partial(mechanisms, search), count, 1, processes):
+            parts[first] = part
+            progress(1)
+    else:
+        for k in range(count):
+            parts[k] = mechanisms(search, k, k + 1)
+            progress(1)
+    every = [each for k in sorted(parts) for each in parts[k]]
+    rows = [each for each in every if isinstance(each, Found)]
+    left_out = [each for each in every if isinstance(each, LeftOutMechanism)]
+    if not rows:
+        raise InputError(*(Problem(f"{each.name}: {each.why}") for each in left_out[:5]))
+    period = first_period(building)
+    return Assessed(building, site, ranked(rows), left_out, period, period_given=building.T1 is not None)
+
+
+def ranked(rows: Sequence[Found]) -> list[Found]:
+    """Return mechanisms in the order of their conclusions, the worst first; alike ones as they are."""
+    return sorted(rows, key=lambda each: [-float(f"{x:.9g}") for x in severity(each.conclusion)])
+
+
+def shaken(found: Assessed, worst: int, sets: Mapping[str | None, Histories]) -> Assessed:
+    """Return a building whose worst mechanisms are verified by time histories too.
+
+    Parameters
+    ----------
+    found : Assessed
+        The building.
+    worst : int
+        How many mechanisms.
+    sets : mapping of str to Histories
+        The records of each limit state.
+
+    Raises
+    ------
+    InputError
+        If a structure has no restitution, or the site lacks the limit state.
+    SolverError
+        If a motion cannot be simulated to its end.
+    """
+    rows = list(found.rows)
+    for k, each in enumerate(rows[:worst]):
+        result, place = each.verification, floor_of(found.building, found.site, each.made.z)
+        for histories in sets.values():
+            result = with_histories(result, each.structure, place, histories)
+        rows[k] = replace(each, verification=result)
+    names = [each.made.name for each in rows[:worst]]
+    return replace(found, rows=ranked(rows), shaken=names)
+
+
+@short_repr
+@dataclass(frozen=True)
+class BarsOfLevel:
+    """Bars of the ties of a level, and what they do for the whole building.
+
+    Parameters
+    ----------
+    level : int
+        The level.
+    diameter : float or None
+        The least diameter of those in use with which every mechanism satisfies the code [m]; None if none does.
+    tried : sequence of (float, float, str)
+        Diameters [m], least ratio of all mechanisms, and the mechanism that has it.
+    """
+
+    level: int
+    diameter: float | None
+    tried: Sequence[tuple[float, float, str]]
+
+
+def bars_of_level(found: Assessed, level: int, progress: Callable[[int], object] = int) -> BarsOfLevel:
+    """Find the least bars of the ties of a level with which all mechanisms of a building satisfy the code.
+
+    Hinges and cracks are searched anew for each diameter, as other bars may have other weakest ones.
+
+    Raises
+    ------
+    InputError
+        If the level has no ties.
+    """
+    building = found.building
+    if not any(each.level == level for each in building.ties):
+        levels = sorted({each.level for each in building.ties})
+        hint = f"levels with ties: {', '.join(map(str, levels))}" if levels else "add ties to the building"
+        raise InputError(Problem(f"level {level} has no ties", field="ties", hint=hint))
+    tried, least = list[tuple[float, float, str]](), None
+    for diameter in BAR_DIAMETERS:
+        each = assess(making.with_bars(building, level, diameter), found.site)
+        progress(1)
+        tried.append((diameter, each.governs.ratio, each.governs.made.name))
+        if each.conclusion.concluded in (Concluded.SATISFIED, Concluded.SATISFIED_IF):
+            least = diameter
+            break
+    return BarsOfLevel(level, least, tried)
