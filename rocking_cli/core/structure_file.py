@@ -100,6 +100,8 @@ def _mechanism(document: Document, registry: Registry) -> type[Mechanism] | None
         hint = (
             f"did you mean mechanism instead of {similar[0]}?"
             if similar
+            else "this describes a building: `rocking building` takes it"
+            if "walls" in data or "pareti" in data
             else f"add a line `mechanism: NAME`; known: {known}"
         )
         document.problems.append(document.problem("is missing", document.values[()], "mechanism", hint))

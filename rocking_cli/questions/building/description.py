@@ -425,6 +425,17 @@ def read_building(path: Path) -> tuple[Building, Document]:
     return building_of(document), document
 
 
+def is_building(given: object) -> bool:
+    """Return whether the argument of a command is the file of a building: YAML that gives levels and no mechanism."""
+    if not isinstance(given, str | Path) or Path(given).suffix.lower() not in (".yaml", ".yml"):
+        return False
+    try:
+        keys = parse(read_text(Path(given), "structure"), str(given), "structure", "").data
+    except InputError:  # the reader of structures says what is wrong
+        return False
+    return "mechanism" not in keys and not keys.keys().isdisjoint(("levels", "livelli", "walls", "pareti"))
+
+
 def building_of(document: Document) -> Building:
     """Return the building in a parsed file. Raises `InputError` with every problem: place, field, and remedy."""
     if "mechanism" in document.data:

@@ -30,6 +30,7 @@ from rocking_cli.questions.building.description import (
     OnTop,
     Wall,
 )
+from rocking_cli.studies.remark import Remark
 
 STRIPS = 6  # of a gable, each with its mean length: the mass is exact, the centroid 1.4 % too low
 ARCH_STRESS, ARCH_DEPTH, ARCH_RISE = 1.5, 0.1, 0.9  # of a wall that bends as an arch [EN 1996-1-1, 6.3.2]
@@ -40,19 +41,21 @@ OF_ITS_WEIGHT = 1e-9  # share of the weight of a wall; a smaller load on top is 
 
 
 class NotMade(Exception):
-    """A mechanism cannot be made of a description, or does not exist; the message says why.
+    """A mechanism cannot be made of a description, or does not exist.
 
     Parameters
     ----------
-    why : str
-        The reason, a clause.
+    key : str
+        Key of the reason among the texts, a clause.
     exists : bool
         Whether the mechanism exists all the same, and may govern.
+    **values
+        Values in the reason.
     """
 
-    def __init__(self, why: str, *, exists: bool = True) -> None:
-        super().__init__(why)
-        self.exists = exists
+    def __init__(self, key: str, *, exists: bool = True, **values: Any) -> None:
+        super().__init__(key)
+        self.why, self.exists = Remark(f"why_{key}", values), exists
 
 
 class Strip(NamedTuple):
@@ -92,8 +95,12 @@ class Made:
         Its fields, as a structure file has them.
     angle : float or None
         Angle of the crack in crossing walls from the vertical [rad]; None without any.
-    remarks : sequence of str
-        How the description was read, a sentence each.
+    part, other : str
+        What stands on the wall or where walls meet, by its name if it has one, and the other wall of a corner.
+    without_gable : bool
+        Whether the gable of the wall has fallen before.
+    remarks : sequence of Remark
+        What the structure leaves out of the mechanism.
     """
 
     kind: str
@@ -104,7 +111,10 @@ class Made:
     mechanism: str
     fields: Mapping[str, Any]
     angle: float | None = None
-    remarks: Sequence[str] = ()
+    part: str = ""
+    other: str = ""
+    without_gable: bool = False
+    remarks: Sequence[Remark] = ()
 
     def structure(self) -> Mechanism:
         """Return the structure. Raises `InputError` if its fields do not fit together."""
@@ -132,7 +142,7 @@ def strips(building: Building, wall: Wall, low: float, high: float) -> list[Stri
         storey = max(foot + 1, min(int(np.searchsorted(levels, middle)), wall.reaches(building.count)[1]))
         length = wall.length - sum(each.width for at, each in holes if at < middle < at + each.height)
         if length <= 0:
-            raise NotMade(f"openings leave nothing of it at {middle:.4g} m")
+            raise NotMade("openings", z=middle)
         part = Strip(a, b, wall.thick(storey), length, wall.density or building.masonry.density)
         alike = parts and parts[-1][2:] == part[2:]
         parts = [*parts[:-1], parts[-1]._replace(high=b)] if alike else [*parts, part]
@@ -294,10 +304,11 @@ def overturning(building: Building, wall: Wall, z: float, angle: float | None = 
         ("interlock", friction), ("crushing", _crushing(building)), ("unusual", building.unusual),
     ) if value}  # fmt: skip
     held = friction is not None or bool(wedges)
-    without = " without its gable" if not gable and any(each.wall == wall.name for each in building.gables) else ""
-    name = f"{wall.name}: overturning{without} about {z:.4g} m"
+    name = f"{wall.name}: overturning{'' if gable else ' without its gable'} about {z:.4g} m"
     hinge = z, max(each.high for each in parts)
-    return Made("overturning", wall.name, name, z, hinge, kind, fields, crack if held else None)
+    return Made(
+        "overturning", wall.name, name, z, hinge, kind, fields, crack if held else None, without_gable=not gable
+    )
 
 
 def _given_angle(building: Building) -> float:
@@ -329,10 +340,10 @@ def bending(building: Building, wall: Wall, foot: int, top: int) -> Made:
     low, high = building.levels[foot], building.levels[top]
     parts = strips(building, wall, low, high)
     if len({each.thickness for each in parts}) > 1:
-        raise NotMade("its thickness changes between the levels that hold it, and a wall between floors has one")
+        raise NotMade("thickness")
     between = [name for name, z, _ in _seats(building, wall, low) if z < high]
     if between:
-        raise NotMade(f"it bears {', '.join(between)} between the levels that hold it, and slides below")
+        raise NotMade("between", names=", ".join(between))
     thickness, outer, g = parts[0].thickness, parts[0].thickness / 2, 9.80665
     above = building.levels[wall.reaches(building.count)[1]]
     weights = [
@@ -346,7 +357,7 @@ def bending(building: Building, wall: Wall, foot: int, top: int) -> Made:
     load = sum(weight for weight, _ in weights)
     mass = sum(each.mass for each in parts)
     if load <= OF_ITS_WEIGHT * g * mass:
-        raise NotMade("nothing stands on it, so that it does not hinge there: it overturns", exists=False)
+        raise NotMade("no_load", exists=False)
     x = sum(weight * at for weight, at in weights) / load
     fields = {"thickness": thickness, "height": _rounded(high - low), "hinge": "weakest", "overburden": round(load, 1),
               "overburden_eccentricity": _rounded(x), "depth": wall.length,
@@ -397,24 +408,21 @@ def arch(building: Building, wall: Wall) -> Made:
     low, high = building.levels[top - 1], building.levels[top]
     confined, strength = wall.confined, building.masonry.compression
     if confined is None:
-        raise NotMade("nothing is named that resists the thrust of its arch (`confined`)", exists=False)
+        raise NotMade("unconfined", exists=False)
     if strength is None:
-        raise NotMade("`compression` of the masonry is not given, on which its arch depends", exists=False)
+        raise NotMade("no_strength", exists=False)
     if any(each.storey == top for each in wall.openings):
-        raise NotMade("openings interrupt its arch in the top storey", exists=False)
+        raise NotMade("opened", exists=False)
     t, span, height = wall.thick(top), confined.length or wall.length, high - low
     if span > MOST_SLENDER_ARCH * t:
-        what = f"its length of {span:.4g} m is over {MOST_SLENDER_ARCH:g} times its thickness: no arch is counted"
-        raise NotMade(what, exists=False)
-    gamma = building.masonry.gamma or 1.0
-    thrust = ARCH_STRESS * ARCH_DEPTH * strength / gamma * t * height
+        raise NotMade("slender", exists=False, length=span, most=MOST_SLENDER_ARCH)
+    thrust = ARCH_STRESS * ARCH_DEPTH * strength / (building.masonry.gamma or 1.0) * t * height
     if thrust > confined.resistance:
-        what = f"its arch has a thrust of {thrust / 1e3:.4g} kN, and its ends resist {confined.resistance / 1e3:.4g} kN"
-        raise NotMade(f"{what}: it would spread them", exists=False)
+        raise NotMade("spread", exists=False, thrust=thrust / 1e3, resistance=confined.resistance / 1e3)
     density = wall.density or building.masonry.density
     mass, rise = density * t * height * span, ARCH_RISE * t
     ratio = 8 * thrust * rise / (mass * 9.80665 * span)
-    remarks = [] if ratio <= MOST_ARCH_RATIO else [f"its arch is stronger, {ratio:.3g} g, than is counted here"]
+    remarks = [] if ratio <= MOST_ARCH_RATIO else [Remark("stronger_arch", {"ratio": ratio, "most": MOST_ARCH_RATIO})]
     ratio = min(ratio, MOST_ARCH_RATIO)
     # Both halves turn by phi: the middle moves by phi L/2, and their mass by half of it on average.
     fields = {"points": [[0.0, round(ratio, 6)], [_rounded(rise), 0.0]], "control_height": span / 2,
@@ -444,9 +452,10 @@ def standing(building: Building, each: OnTop, z: float | None = None) -> Made:
         fields["loads"] = [{"name": "bells", "mass": each.bells, "at": [0.0, each.bells_height]}]
     fields |= {key: value for key, value in (("crushing", _crushing(building)), ("unusual", building.unusual)) if value}
     what = {"Gable": "gable", "BellGable": "bell gable"}.get(type(each).__name__, "parapet")
-    name = f"{each.name or f'{what} on {each.wall}'}: overturning about {low:.4g} m"
+    part = each.name or f"{what} on {each.wall}"
     height = min(low, building.height)  # above the last level the motion is that of its top
-    return Made(what.replace(" ", "_"), each.wall, name, height, (low, foot + each.height), kind, fields)
+    name = f"{part}: overturning about {low:.4g} m"
+    return Made(what.replace(" ", "_"), each.wall, name, height, (low, foot + each.height), kind, fields, part=part)
 
 
 def _pierced(whole: Strip, openings: Sequence[Hole]) -> list[Strip]:
@@ -456,7 +465,7 @@ def _pierced(whole: Strip, openings: Sequence[Hole]) -> list[Strip]:
     for a, b in pairwise(sorted({whole.low, whole.high, *(z for z in edges if whole.low < z < whole.high)})):
         taken = sum(e.width for e in openings if whole.low + e.z < (a + b) / 2 < whole.low + e.z + e.height)
         if taken >= whole.length:
-            raise NotMade(f"openings leave nothing of it at {(a + b) / 2:.4g} m")
+            raise NotMade("openings", z=(a + b) / 2)
         parts.append(whole._replace(low=a, high=b, length=whole.length - taken))
     return parts
 
@@ -521,8 +530,9 @@ def corner(building: Building, k: int, z: float, angle: float) -> Made:
     fields |= {key: value for key, value in (
         ("loads", loads), ("rebound", building.rebound), ("unusual", building.unusual),
     ) if value}  # fmt: skip
-    name = f"{given.name or 'corner of ' + ' and '.join(given.walls)}: overturning about {z:.4g} m"
-    return Made("corner", given.walls[0], name, z, (z, top), "rigid_body", fields, angle)
+    first, second = given.walls
+    name = f"{given.name or f'corner of {first} and {second}'}: overturning about {z:.4g} m"
+    return Made("corner", first, name, z, (z, top), "rigid_body", fields, angle, given.name or "", second)
 
 
 def with_bars(building: Building, level: int, diameter: float) -> Building:

@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise, product
 from math import inf, isnan, nan, radians
-from typing import Any, get_args
+from typing import Any, NamedTuple, get_args
 
 import numpy as np
 
 from rocking_cli.core.hung.ties import BAR_DIAMETERS
 from rocking_cli.dynamics.parallel import in_processes
-from rocking_cli.errors import InputError, MechanismError, Problem, SolverError
+from rocking_cli.errors import InputError, MechanismError, Problem, SolverError, named
 from rocking_cli.questions.building import made as making
 from rocking_cli.questions.building.description import Building, Wall
 from rocking_cli.questions.building.made import Made, NotMade
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Concluded, Conclusion, severity
-from rocking_cli.verification.check import verify, with_histories
+from rocking_cli.studies.remark import Remark
+from rocking_cli.verification.check import code_of, verify, with_histories
 from rocking_cli.verification.code import SiteFile
 from rocking_cli.verification.results import Histories, Verification
 
@@ -70,7 +71,7 @@ class LeftOutMechanism:
     """A mechanism that was not verified: its name, why, and whether it could govern."""
 
     name: str
-    why: str
+    why: Remark | str
     open: bool = False
 
 
@@ -266,7 +267,7 @@ class Search:
         try:
             made = make()
         except NotMade as why:
-            yield LeftOutMechanism(name, str(why), why.exists)
+            yield LeftOutMechanism(name, why.why, why.exists)
             return None
         try:
             found = self.verified(made)
@@ -282,6 +283,10 @@ def mechanisms(search: Search, first: int, stop: int) -> list[Found | LeftOutMec
     walls = search.building.walls
     tasks = [search.of_wall(wall) for wall in walls[first:stop]] + [search.of_others()] * (stop > len(walls))
     return [each for task in tasks for each in task]
+
+
+class NoMechanism(Exception):
+    """No mechanism of a building can be verified; its argument has them with the reasons."""
 
 
 def assess(
@@ -302,8 +307,8 @@ def assess(
 
     Raises
     ------
-    InputError
-        If no mechanism can be verified, with the reason of the first.
+    NoMechanism
+        If no mechanism can be verified.
     """
     search, count = Search(building, site), len(building.walls) + 1
     parts: dict[int, list[Found | LeftOutMechanism]] = {}
@@ -319,7 +324,7 @@ def assess(
     rows = [each for each in every if isinstance(each, Found)]
     left_out = [each for each in every if isinstance(each, LeftOutMechanism)]
     if not rows:
-        raise InputError(*(Problem(f"{each.name}: {each.why}") for each in left_out[:5]))
+        raise NoMechanism(left_out)
     period = first_period(building)
     return Assessed(building, site, ranked(rows), left_out, period, period_given=building.T1 is not None)
 
@@ -349,6 +354,9 @@ def shaken(found: Assessed, worst: int, sets: Mapping[str | None, Histories]) ->
         If a motion cannot be simulated to its end.
     """
     rows = list(found.rows)
+    if missing := [each.made.name for each in rows[:worst] if each.structure.restitution_source == "missing"]:
+        hint = "give `rebound` in the building: a measured rate after an impact over that before, from 0 to below 1"
+        raise InputError(Problem(f"is missing: {missing[0]} leans on the building", field="rebound", hint=hint))
     for k, each in enumerate(rows[:worst]):
         result, place = each.verification, floor_of(found.building, found.site, each.made.z)
         for histories in sets.values():
@@ -358,47 +366,114 @@ def shaken(found: Assessed, worst: int, sets: Mapping[str | None, Histories]) ->
     return replace(found, rows=ranked(rows), shaken=names)
 
 
+def compared(found: Assessed, other: Assessed) -> Assessed:
+    """Return a building beside the strengthened one, judged by what the code requires after the intervention.
+
+    What is required of each strengthened mechanism depends on the ratio of the worst one before, if on any.
+    """
+    code, site = code_of(found.site), found.site.site
+    worst = found.governs.verification
+
+    def judged(row: Found, *, after: bool) -> Found:
+        both = code.strengthened(worst if after else row.verification, row.verification, site)
+        return replace(row, verification=both.strengthened if after else replace(both, strengthened=None))
+
+    later = replace(other, rows=ranked([judged(row, after=True) for row in other.rows]))
+    return replace(found, rows=ranked([judged(row, after=False) for row in found.rows]), strengthened=later)
+
+
+class BarsTried(NamedTuple):
+    """Bars of the ties of a level that were tried.
+
+    Parameters
+    ----------
+    diameter : float
+        Diameter [m].
+    ratio : float
+        Least ratio of the mechanisms that the ties hold.
+    name : str
+        The mechanism that has it.
+    satisfied : bool
+        Whether all these mechanisms satisfy the code.
+    """
+
+    diameter: float
+    ratio: float
+    name: str
+    satisfied: bool
+
+
 @short_repr
 @dataclass(frozen=True)
 class BarsOfLevel:
-    """Bars of the ties of a level, and what they do for the whole building.
+    """Bars of the ties of a level, and what they do for all mechanisms that they hold.
 
     Parameters
     ----------
     level : int
         The level.
-    diameter : float or None
-        The least diameter of those in use with which every mechanism satisfies the code [m]; None if none does.
-    tried : sequence of (float, float, str)
-        Diameters [m], least ratio of all mechanisms, and the mechanism that has it.
+    tried : sequence of BarsTried
+        Diameters in use, the least first, up to the first that suffices.
+    whole : Conclusion
+        The conclusion on the building with the last of them.
+    governs : str
+        The mechanism that governs it then.
     """
 
     level: int
-    diameter: float | None
-    tried: Sequence[tuple[float, float, str]]
+    tried: Sequence[BarsTried]
+    whole: Conclusion
+    governs: str
+
+    @property
+    def diameter(self) -> float | None:
+        """The least diameter with which all that the ties hold satisfies the code [m]; None if none does."""
+        last = self.tried[-1]
+        return last.diameter if last.satisfied else None
 
 
 def bars_of_level(found: Assessed, level: int, progress: Callable[[int], object] = int) -> BarsOfLevel:
-    """Find the least bars of the ties of a level with which all mechanisms of a building satisfy the code.
+    """Find the least bars of the ties of a level with which all mechanisms that they hold satisfy the code.
 
     Hinges and cracks are searched anew for each diameter, as other bars may have other weakest ones.
+
+    Parameters
+    ----------
+    found : Assessed
+        The building.
+    level : int
+        The level.
+    progress : callable, optional
+        Called with 1 after each diameter.
 
     Raises
     ------
     InputError
         If the level has no ties.
     """
-    building = found.building
-    if not any(each.level == level for each in building.ties):
+    building, tried = found.building, list[BarsTried]()
+    names = {each.name for each in building.ties if each.level == level}
+    held = [wall for wall in building.walls if any(wall.name in e.walls for e in building.ties if e.level == level)]
+    if not held:
         levels = sorted({each.level for each in building.ties})
         hint = f"levels with ties: {', '.join(map(str, levels))}" if levels else "add ties to the building"
-        raise InputError(Problem(f"level {level} has no ties", field="ties", hint=hint))
-    tried, least = list[tuple[float, float, str]](), None
+        raise InputError(Problem(f"level {level} has no ties", field=named("design"), hint=hint))
     for diameter in BAR_DIAMETERS:
-        each = assess(making.with_bars(building, level, diameter), found.site)
+        search = Search(making.with_bars(building, level, diameter), found.site)
+        rows = [row for wall in held for row in search.of_wall(wall) if isinstance(row, Found)]
+        tied = [row for row in rows if any(_of(names, tie["name"]) for tie in row.made.fields.get("ties", ()))]
         progress(1)
-        tried.append((diameter, each.governs.ratio, each.governs.made.name))
-        if each.conclusion.concluded in (Concluded.SATISFIED, Concluded.SATISFIED_IF):
-            least = diameter
+        if not tied:
+            raise InputError(Problem(f"the ties of level {level} hold no mechanism that can be verified"))
+        worst = ranked(tied)[0]
+        satisfied = worst.conclusion.concluded in (Concluded.SATISFIED, Concluded.SATISFIED_IF)
+        tried.append(BarsTried(diameter, min(row.ratio for row in tied), worst.made.name, satisfied))
+        if satisfied:
             break
-    return BarsOfLevel(level, least, tried)
+    others = [row for row in found.rows if row.made.wall not in {wall.name for wall in held}]
+    whole = ranked([*rows, *others])[0]
+    return BarsOfLevel(level, tried, whole.conclusion, whole.made.name)
+
+
+def _of(names: Iterable[str], name: str) -> bool:
+    return any(name == each or name.startswith(f"{each} at level ") for each in names)

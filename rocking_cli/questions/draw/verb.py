@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from rocking_cli.ask.answer import Answer, drawn
 from rocking_cli.ask.inputs import structure_of
@@ -13,20 +14,18 @@ from rocking_cli.questions.draw.asked import DrawAsked
 from rocking_cli.views.view import View, heading
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from rocking_cli.core import Angle, Length
     from rocking_cli.studies.picture import Picture
 
 
 @verb(DrawAsked)
-def draw(asked: DrawAsked, watch: Watcher) -> Answer[Picture]:
+def draw(asked: DrawAsked, watch: Watcher) -> Answer[Any]:
     """Draw a structure at rest with its dimensions, and displaced in both directions.
 
     Returns
     -------
     Answer of Picture
-        Parts of the structure, its dimensions, and the positions of the parts at any rotation.
+        Parts of the structure, its dimensions, and the positions of the parts at any rotation; of a building its walls.
 
     Raises
     ------
@@ -46,8 +45,11 @@ def draw(asked: DrawAsked, watch: Watcher) -> Answer[Picture]:
     >>> [length.text for length in answer.sketch.lengths]
     ['2b = 0.7 m', '2h = 2.8 m', 'R = 1.44 m']
     """
+    from rocking_cli.questions.building.description import is_building
     from rocking_cli.studies.picture import picture
 
+    if is_building(asked.structure):
+        return _of_building(Path(str(asked.structure)), asked)
     at, ready = asked.at, structure_of(asked.structure, watch)
     with ready.named():
         drawing = picture(ready.mechanism)
@@ -60,6 +62,24 @@ def draw(asked: DrawAsked, watch: Watcher) -> Answer[Picture]:
     figure = drawn("plotting.structure.draw_structure", drawing, heading(ready.mechanism), at)
     lengths = {"length": [each.text for each in drawing.sketch.lengths]}
     return Answer("drawing", drawing, _view(drawing), lambda: lengths, figure)
+
+
+def _of_building(file: Path, asked: DrawAsked) -> Answer[Any]:
+    """Return the walls of a building, from outside and in section."""
+    from rocking_cli.questions.building.description import read_building
+    from rocking_cli.questions.building.view import words
+
+    for name in ("at", "dxf"):
+        if asked.has(name):
+            raise InputError(Problem("has no effect on a building", field=named(name), hint="leave it out"))
+    house, _ = read_building(file)
+    say = words("en")
+    figure = drawn("questions.building.picture.draw_description", house, say)
+    sizes = [f"{each.name}: {each.length:g} m long" for each in house.walls]
+    shown = View(
+        house.model_dump(exclude_unset=True), [house.name or say("building"), *(f"  {each}" for each in sizes)]
+    )
+    return Answer("drawing", house, shown, lambda: {"wall": [each.name for each in house.walls]}, figure)
 
 
 def _write(file: Path, drawing: Picture, at: float | None, watch: Watcher) -> None:

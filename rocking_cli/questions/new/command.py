@@ -188,6 +188,8 @@ STUDY = "study"
 """Name of the study file. A mechanism of the same name works, but is not printed."""
 SITE = "site"
 """Name of the site file for `rocking verify`."""
+BUILDING, EDIFICIO = "building", "edificio"
+"""Name of the file for `rocking building`, whose fields are Italian too."""
 
 
 @click.command(cls=Command, short_help="Print a template file, or create a plugin package.")
@@ -195,7 +197,7 @@ SITE = "site"
     "name",
     metavar="NAME",
     required=False,
-    shell_complete=completer(MECHANISMS, STUDY, SITE, *STARTERS),
+    shell_complete=completer(MECHANISMS, STUDY, SITE, BUILDING, *STARTERS),
 )
 @click.option("--plugin", is_flag=True, help="Create a package for a mechanism of your own, called NAME.")
 @click.option(
@@ -227,8 +229,9 @@ def command(
 
     The common structures are facade, parapet, gable, pinnacle, corner, bell_cell, column_with_tendon and statue.
     `study` is a fragility study of a block.yaml in the same folder, and `site` a site file for `rocking verify`: of the
-    Italian code, or with --code CODE of any installed code of practice. Italian names find their templates, such as
-    facciata, parapetto, timpano, cantonale, arco, muro and portale; --language it prints the comments in Italian.
+    Italian code, or with --code CODE of any installed code of practice; `building` is a house for `rocking building`.
+    Italian names find their templates, such as facciata, parapetto, timpano, cantonale, arco, muro, portale and
+    edificio; --language it prints the comments in Italian.
 
     With --plugin, the command writes a package for a mechanism of your own, called NAME: a working mechanism with
     comments for you to change, its tests, and a structure file. `pip install` makes it available like the
@@ -254,12 +257,14 @@ def command(
             raise click.UsageError(f"--plugin creates one package: give one name, not {name} and {code}.")
         if language != LANGUAGES[0]:
             raise click.UsageError("--language requires a template: a package for --plugin is in English.")
-        write(name, out, MECHANISM if code is None else CODE, printed=(STUDY, SITE, *STARTERS), as_json=as_json)
+        write(
+            name, out, MECHANISM if code is None else CODE, printed=(STUDY, SITE, BUILDING, *STARTERS), as_json=as_json
+        )
         return
     if out is not None:
         raise click.UsageError("--out requires --plugin: without it the file is printed; redirect it with > FILE.")
-    made = _made(name, code, as_json=as_json)
-    if language != LANGUAGES[0]:
+    made = _made(name, code, language, as_json=as_json)
+    if language != LANGUAGES[0] and BUILDING not in made:
         made["yaml"], missing = in_italian(made["yaml"])
         if missing:
             terminal.note(f"comments without an Italian text, which stay in English: {len(missing)}")
@@ -269,7 +274,7 @@ def command(
         terminal.result(made["yaml"].rstrip("\n"))
 
 
-def _made(word: str, code: str | None, *, as_json: bool) -> dict[str, Any]:
+def _made(word: str, code: str | None, language: str, *, as_json: bool) -> dict[str, Any]:
     """Return the kind and name of a template, and its text; a warning says if it does not work as it is."""
     from rocking_cli.plugins.registry import find
 
@@ -283,6 +288,8 @@ def _made(word: str, code: str | None, *, as_json: bool) -> dict[str, Any]:
         terminal.note(f"{word} is the template {name}")
     if name == STUDY:
         return {"study": STUDY, "yaml": starter(STUDY)}
+    if name == BUILDING:
+        return {"building": BUILDING, "yaml": starter(BUILDING if language == LANGUAGES[0] else EDIFICIO)}
     if name == SITE:
         return _site(code, as_json=as_json)
     if name in STARTERS and name not in mechanisms:

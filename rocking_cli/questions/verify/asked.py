@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from pydantic import model_validator
 
@@ -60,7 +60,46 @@ def _sets(value: Any) -> dict[str, Any]:
     return sets
 
 
-class VerifyAsked(OfStructure, AtSite, MaybeUnderMotions, ForRecords, OfJoints, InLanguage, Identity):
+class UnderSets(MaybeUnderMotions, ForRecords):
+    """A question about the records of limit states."""
+
+    heading: ClassVar[str] = "Options"
+    sets: Mapping[str, Any] | None = option(
+        "Motions of a limit state of its own: a folder or list that `rocking select` wrote, a file, or a pattern.  "
+        "Repeatable. In Python a mapping with the motions of each state.",
+        Kind(_sets, "STATE=PLACE"), typed="set", repeat=True,
+    )  # fmt: skip
+
+    @cached_property
+    def ground_motions(self) -> Motions:
+        """All ground motions, together with how they are read and scaled."""
+        from rocking_cli.ask.ground_motions import each_of
+
+        return self.as_read([one for each in (self.sets or {}).values() for one in each_of(each)] or self.motions)
+
+    @property
+    def requested(self) -> dict[str | None, Motions]:
+        """The set of motions of each limit state, None for the default one; empty without motions."""
+        if self.sets:
+            return {state: self.as_read(each) for state, each in self.sets.items()}
+        return {self.state: self.ground_motions} if self.ground_motions else {}
+
+    @model_validator(mode="after")
+    def _one_set_each(self) -> Self:
+        """Refuse sets that are empty, or beside other motions."""
+        from rocking_cli.ask.ground_motions import each_of
+
+        if self.sets is None:
+            return self
+        for name in ("motions", "state"):
+            if self.has(name):
+                raise InputError(f"{named(name)} cannot be combined with {named('sets')}: give sets alone")
+        if empty := [key for key, each in self.sets.items() if not each_of(each)] or ["any state"] * (not self.sets):
+            raise InputError(f"{named('sets')} has no ground motion for {empty[0]}")
+        return self
+
+
+class VerifyAsked(OfStructure, AtSite, UnderSets, OfJoints, InLanguage, Identity):
     """Verify a rocking mechanism by the code that the site file names: the Italian, NTC 2018 and Circolare 7/2019.
 
     The command compares the damage, linear and nonlinear methods for each direction, on the exact capacity curve and on
@@ -104,11 +143,6 @@ class VerifyAsked(OfStructure, AtSite, MaybeUnderMotions, ForRecords, OfJoints, 
         "Control point, in m, and the body it is on.", Kind(_point, "X,Y[,BODY]"),
         usual="centroid of the moving weights",
     )  # fmt: skip
-    sets: Mapping[str, Any] | None = option(
-        "Motions of a limit state of its own: a folder or list that `rocking select` wrote, a file, or a pattern.  "
-        "Repeatable. In Python a mapping with the motions of each state.",
-        Kind(_sets, "STATE=PLACE"), typed="set", repeat=True,
-    )  # fmt: skip
     in_full: bool = option(
         "Show also the ground, both curves, every clause and the remarks in full.",
         default=True, where="Python", on_terminal=False,
@@ -118,31 +152,3 @@ class VerifyAsked(OfStructure, AtSite, MaybeUnderMotions, ForRecords, OfJoints, 
         output(".html", ".docx", ".pdf"),
     )
     plot: Path | None = plot_file("Plot the capacity curves")
-
-    @cached_property
-    def ground_motions(self) -> Motions:
-        """All ground motions, together with how they are read and scaled."""
-        from rocking_cli.ask.ground_motions import each_of
-
-        return self.as_read([one for each in (self.sets or {}).values() for one in each_of(each)] or self.motions)
-
-    @property
-    def requested(self) -> dict[str | None, Motions]:
-        """The set of motions of each limit state, None for the default one; empty without motions."""
-        if self.sets:
-            return {state: self.as_read(each) for state, each in self.sets.items()}
-        return {self.state: self.ground_motions} if self.ground_motions else {}
-
-    @model_validator(mode="after")
-    def _one_set_each(self) -> Self:
-        """Refuse sets that are empty, or beside other motions."""
-        from rocking_cli.ask.ground_motions import each_of
-
-        if self.sets is None:
-            return self
-        for name in ("motions", "state"):
-            if self.has(name):
-                raise InputError(f"{named(name)} cannot be combined with {named('sets')}: give sets alone")
-        if empty := [key for key, each in self.sets.items() if not each_of(each)] or ["any state"] * (not self.sets):
-            raise InputError(f"{named('sets')} has no ground motion for {empty[0]}")
-        return self

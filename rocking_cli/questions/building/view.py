@@ -1,0 +1,256 @@
+"""View of a building with its mechanisms, as text and as data."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict
+from math import degrees
+from typing import Any, NamedTuple
+
+from rocking_cli.core.structure_file import fields_text
+from rocking_cli.io.yaml_file import block
+from rocking_cli.questions.building.study import (
+    DAMPING,
+    LATER_DAMPING,
+    LENGTHENED,
+    Assessed,
+    BarsOfLevel,
+    Found,
+    floor_of,
+)
+from rocking_cli.studies.conclusion import Concluded, Effect
+from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, table_of
+from rocking_cli.views.conclusion import conclusion_data, limit_in_words, next_in_words, of_verification
+from rocking_cli.views.sheet.language import Language, texts_of
+from rocking_cli.views.verification import showing
+from rocking_cli.views.view import Aside, Table, View, number
+
+PACKAGE = "rocking_cli.questions.building"
+NAMED = 2  # mechanisms that a sentence names
+SHOWN_ROWS = 12  # mechanisms that terminals and the first page list
+
+
+class RankedMechanism(NamedTuple):
+    """A mechanism with its rank, from 1, and what names it and its verdict in a language."""
+
+    rank: int
+    found: Found
+    title: str
+    verdict: str
+    limits: str
+
+
+def words(key: str, *, is_plain: bool = True) -> Language:
+    """Return a language with the texts of buildings."""
+    return Language(key, texts_of(PACKAGE, key), is_plain)
+
+
+def title_of(found: Found, say: Language) -> str:
+    """Return what a mechanism is: the wall, how it moves, and where."""
+    made = found.made
+    low, high = (f"{z:.4g}" for z in made.hinge)
+    key = f"{made.kind}_without" if made.without_gable else made.kind
+    name = made.part or say(f"{made.kind}_on", wall=made.wall, other=made.other)
+    return say(key, wall=made.wall, z=say.formula(low), top=say.formula(high), name=name)
+
+
+def ranked(found: Assessed, say: Language) -> list[RankedMechanism]:
+    """Return the mechanisms with their ranks and words."""
+    rows = []
+    for rank, each in enumerate(found.rows, 1):
+        end, spoken = each.conclusion, showing(each.verification).in_language(say.key).say
+        verified = each.verification.deciding
+        method = verified.methods[end.method].title if end.method in verified.methods else "time histories"
+        limits = f"{end.limit_state} {spoken(method.removesuffix(f' at {end.limit_state}'))}".strip()
+        rows.append(RankedMechanism(rank, each, title_of(each, say), say(f"short_{end.concluded.value}"), limits))
+    return rows
+
+
+COLUMNS: Sequence[Column[RankedMechanism]] = (
+    Column("rank", of("rank"), head="rank"),
+    Column("title", of("title"), head="mechanism", name="mechanism", text=True),
+    Column("kind", of("found.made.kind"), text=True),
+    Column("wall", of("found.made.wall"), text=True),
+    Column("ratio", of("found.ratio"), head="ratio"),
+    Column("concluded", of("found.conclusion.concluded.value"), text=True),
+    only_shown("verification", of("verdict"), text=True),
+    Column("limit_state", of("found.conclusion.limit_state"), text=True),
+    Column("method", of("found.conclusion.method"), text=True),
+    only_shown("governs", of("limits"), text=True, rank=2),
+    Column("hinge", lambda row: row.found.made.hinge[0], "m"),
+    Column("top", lambda row: row.found.made.hinge[1], "m"),
+    Column("shaken_at", of("found.made.z"), "m"),
+    Column("crack", lambda row: None if row.found.made.angle is None else degrees(row.found.made.angle), "deg"),
+    Column("lambda", lambda row: min(each.lambda_ for each in row.found.structure.statics), "g"),
+)
+
+
+def view(found: Assessed, designed: BarsOfLevel | None, say: Language) -> View:
+    """Show the verdict on a building, its mechanisms, the worst first, and what is not verified.
+
+    Parameters
+    ----------
+    found : Assessed
+        The building.
+    designed : BarsOfLevel, optional
+        The bars that were found for its ties.
+    say : Language
+        The language.
+    """
+    rows = ranked(found, say)
+    table = table_of(say("table", count=len(rows)), COLUMNS, rows)
+    shown = Table(table.title, [say(each) for each in table.columns], table.rows, table.numbers, table.ranks,
+                  range(SHOWN_ROWS, len(rows)))  # fmt: skip
+    parts: list[Table | str] = [" ".join(verdict(found, say)), shown]
+    if len(rows) > SHOWN_ROWS:
+        parts.append(say("more_rows", count=len(rows) - SHOWN_ROWS))
+    if found.strengthened is not None:
+        parts += [_compared(found, found.strengthened, say), *verdict(found.strengthened, say)]
+    if designed is not None:
+        parts += _designed(designed, say)
+    parts += [*conditions(found, say), *notes(found, say)]
+    return View(lambda: data(found, designed, say), parts)
+
+
+def verdict(found: Assessed, say: Language) -> Iterator[str]:
+    """Yield the sentences of the verdict on a building."""
+    worst, counts = found.governs, Counter(each.conclusion.concluded for each in found.rows)
+    end, name = found.conclusion, found.building.name or say("building")
+    spoken = showing(worst.verification).in_language(say.key).say
+    yield say(f"verdict_{end.concluded.value}", name=name, site=found.site.site.name or say("the site"))
+    yield say("governing", mechanism=title_of(worst, say), count=len(found.rows))
+    yield from of_verification(worst.verification, spoken)[1:2]
+    bad = [say(f"count_{each.value}", count=counts[each]) for each in Concluded if counts[each]]
+    yield say("counts", counts="; ".join(bad))
+    if step := next_in_words(end, spoken):
+        yield step
+
+
+def conditions(found: Assessed, say: Language) -> Iterator[str]:
+    """Yield the conditions of the mechanisms that are satisfied only on conditions, each kind once."""
+    of_key: dict[str, list[tuple[str, str]]] = {}
+    for row in found.rows:
+        spoken = showing(row.verification).in_language(say.key).say
+        for limit in (each for each in row.conclusion.limits if each.effect is not Effect.REPLACES):
+            of_key.setdefault(limit.key, []).append((limit_in_words(limit, spoken), title_of(row, say)))
+    for entries in of_key.values():
+        texts = list(dict.fromkeys(text for text, _ in entries))
+        mechanisms = _some(dict.fromkeys(title for _, title in entries), say)
+        more = say("alike", count=len(texts) - 1) if len(texts) > 1 else ""
+        yield say("condition", condition=texts[0], mechanisms=mechanisms, more=more)
+
+
+def _some(names: Iterable[str], say: Language) -> str:
+    """Return the first names, and how many more there are."""
+    every = list(names)
+    first = ", ".join(every[:NAMED])
+    return say("and_more", names=first, count=len(every) - NAMED) if len(every) > NAMED else first
+
+
+def notes(found: Assessed, say: Language) -> Iterator[str]:
+    """Yield what is not verified, how the motion of the building was taken, and what such a verification leaves out."""
+    for each in found.left_out:
+        if each.open:
+            yield say("open", name=each.name, why=say(each.why))
+    why: dict[str, list[str]] = {}
+    for each in found.left_out:
+        if not each.open:
+            why.setdefault(say(each.why), []).append(each.name)
+    for reason, names in why.items():
+        yield Aside(say("not_made", names=_some(names, say), why=reason))
+    for row in found.rows:
+        for remark in row.made.remarks:
+            yield f"{title_of(row, say)}: {say(remark)}."
+    if any(row.made.z > 0 for row in found.rows) and getattr(found.site.site, "floor", None) is None:
+        source = say("period_given" if found.period_given else "period_formula", T=found.period)
+        later = {"T": LENGTHENED * found.period, "xi": 100 * LATER_DAMPING, "first": 100 * DAMPING}
+        yield say("period", source=source, **later)
+    yield say("covers")
+
+
+def _compared(found: Assessed, other: Assessed, say: Language) -> Table:
+    """Return the least ratio of each kind of mechanism of each wall in both buildings."""
+
+    def least(of: Assessed) -> dict[tuple[str, str], float]:
+        ratios: dict[tuple[str, str], float] = {}
+        for row in of.rows:
+            key = row.made.wall, row.made.kind
+            ratios[key] = min(row.ratio, ratios.get(key, row.ratio))
+        return ratios
+
+    before, after = least(found), least(other)
+    rows = [
+        [key[0], say(f"kind_{key[1]}"), *(number(ratios.get(key), 4) for ratios in (before, after))]
+        for key in sorted({*before, *after}, key=lambda key: before.get(key, after.get(key, 0.0)))
+    ]
+    heads = [say(each) for each in ("wall", "kind", "existing", "strengthened")]
+    return Table(say("compared"), heads, rows, (2, 3))
+
+
+def _designed(found: BarsOfLevel, say: Language) -> Iterator[Table | str]:
+    rows = [[f"{1000 * each.diameter:.0f} mm", number(each.ratio, 4), each.name] for each in found.tried]
+    heads = [say(each) for each in ("bars", "least ratio", "mechanism")]
+    yield Table(say("designed", level=found.level), heads, rows, (0, 1))
+    yield from designed_in_words(found, say)
+
+
+def designed_in_words(found: BarsOfLevel, say: Language) -> Iterator[str]:
+    """Yield which bars suffice for the ties of a level, and what governs the building with them."""
+    last, level = found.tried[-1], found.level
+    key = "no_bars" if found.diameter is None else "bars_suffice"
+    yield say(key, level=level, diameter=1000 * last.diameter, name=last.name)
+    if found.whole.concluded not in (Concluded.SATISFIED, Concluded.SATISFIED_IF):
+        yield say("still", name=found.governs, verdict=say(f"short_{found.whole.concluded.value}"))
+
+
+def data(found: Assessed, designed: BarsOfLevel | None, say: Language) -> dict[str, Any]:
+    """Return a building with its mechanisms as plain data."""
+    mechanisms = []
+    for row in ranked(found, say):
+        made = row.found.made
+        structure = {"mechanism": made.mechanism, "name": made.name, **made.fields}
+        end = conclusion_data(row.found.conclusion)
+        mechanisms.append({**data_of(COLUMNS, row), "conclusion": end, "structure": structure})
+    english = words("en")
+    plain: dict[str, Any] = {
+        "building": found.building.name, "site": found.site.site.name, "conclusion": conclusion_data(found.conclusion),
+        "governs": found.governs.made.name, "T1": found.period, "mechanisms": mechanisms,
+        "left_out": [{**asdict(each), "why": english(each.why)} for each in found.left_out],
+        "shaken": list(found.shaken),
+    }  # fmt: skip
+    if designed is not None:
+        tried = [each._asdict() for each in designed.tried]
+        ends = {"conclusion": conclusion_data(designed.whole), "governs": designed.governs}
+        plain["designed"] = {"level": designed.level, "diameter": designed.diameter, "tried": tried, **ends}
+    if found.strengthened is not None:
+        plain["strengthened"] = data(found.strengthened, None, say)
+    return plain
+
+
+def columns(found: Assessed, say: Language) -> Mapping[str, Sequence[Any]]:
+    """Return a table of the mechanisms as columns."""
+    return frame_of(COLUMNS, ranked(found, say))
+
+
+def file_of(found: Found) -> str:
+    """Return the text of the structure file of a mechanism."""
+    made = found.made
+    above = (
+        f"{made.name}, from {made.hinge[0]:.4g} to {made.hinge[1]:.4g} m above the foundation",
+        f"shaken by the building at {made.z:.4g} m: the site beside it has this height",
+    )
+    return fields_text(made.mechanism, {"name": made.name, **made.fields}, above)
+
+
+def site_file(found: Assessed, z: float) -> str:
+    """Return the text of the site file of what is shaken at a height above the foundation [m]."""
+    site: Any = floor_of(found.building, found.site, z).site
+    fields = dict(found.site.document.data)
+    if fields.pop("grid", None) is not None:  # its path is that of another folder
+        fields = {key: each for key, each in fields.items() if key not in ("longitude", "latitude")}
+        fields["hazard"] = [list(row) for row in site.hazard]
+    fields.pop("floor", None)
+    if site.floor is not None:
+        fields["floor"] = site.floor.model_dump(exclude_unset=True, exclude_none=True)
+    return "\n".join([line for key, value in fields.items() for line in block(key, value)] + [""])
