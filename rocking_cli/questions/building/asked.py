@@ -36,8 +36,8 @@ class BuildingAsked(UnderSets, InLanguage, Identity, WithTable):
     which every mechanism satisfies the code. --structures writes each mechanism as a structure file that every command
     takes, with the site at its height.
 
-    A table of walls (WALLS.csv, .xlsx) with columns name, storey, thickness, height, length and, if it bears a floor,
-    bears and span, is read as a building; --describe writes its file.
+    A table of walls (.csv, .xlsx) with columns name, storey, thickness, height, length and, where a wall bears a floor,
+    bears and span, is read as a building; `rocking new building --walls` makes a file of it.
 
     \b
     Example:
@@ -47,7 +47,7 @@ class BuildingAsked(UnderSets, InLanguage, Identity, WithTable):
       rocking building house.yaml --strengthened tied.yaml --site site.yaml
       rocking building house.yaml --site site.yaml --design 2
       rocking building house.yaml --site site.yaml --record "records/*.AT2"
-      rocking building walls.csv --describe house.yaml
+      rocking new building --walls walls.csv > house.yaml
     """
 
     building: str | Path | Mapping[str, Any] = option(
@@ -64,7 +64,6 @@ class BuildingAsked(UnderSets, InLanguage, Identity, WithTable):
     )
     worst: int = option("Number of mechanisms to verify by time histories.", WHOLE, default=3, ge=1, le=MAX_SHAKEN)
     design: int | None = option("Level whose ties are designed: the least bars that satisfy the code.", WHOLE, ge=1)
-    describe: Path | None = option("Write the building of a table of walls as a file.", output(".yaml"))
     structures: Path | None = option(
         "Write each mechanism into this folder as a structure file, with its site, and a table of all.", FOLDER
     )

@@ -419,10 +419,9 @@ def _of_what_bears(given: Mapping[str, Any], named: Mapping[str, Any]) -> Iterat
             yield ("corners", k), "needs `interlock` of the building: without it the walls overturn each for itself"
 
 
-def read_building(path: Path) -> tuple[Building, Document]:
+def read_building(path: Path) -> Building:
     """Read a building from its file, in English or Italian. Raises `InputError` with every problem of the file."""
-    document = parse(read_text(path, "building"), str(path), "building", HINT)
-    return building_of(document), document
+    return building_of(parse(read_text(path, "building"), str(path), "building", HINT))
 
 
 def is_building(given: object) -> bool:

@@ -452,10 +452,10 @@ def standing(building: Building, each: OnTop, z: float | None = None) -> Made:
         fields["loads"] = [{"name": "bells", "mass": each.bells, "at": [0.0, each.bells_height]}]
     fields |= {key: value for key, value in (("crushing", _crushing(building)), ("unusual", building.unusual)) if value}
     what = {"Gable": "gable", "BellGable": "bell gable"}.get(type(each).__name__, "parapet")
-    part = each.name or f"{what} on {each.wall}"
+    name = f"{each.name or f'{what} of {each.wall}'}: overturning about {low:.4g} m"
     height = min(low, building.height)  # above the last level the motion is that of its top
-    name = f"{part}: overturning about {low:.4g} m"
-    return Made(what.replace(" ", "_"), each.wall, name, height, (low, foot + each.height), kind, fields, part=part)
+    hinge, key = (low, foot + each.height), what.replace(" ", "_")
+    return Made(key, each.wall, name, height, hinge, kind, fields, part=each.name or "")
 
 
 def _pierced(whole: Strip, openings: Sequence[Hole]) -> list[Strip]:

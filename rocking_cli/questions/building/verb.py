@@ -59,9 +59,7 @@ def building(asked: BuildingAsked, watch: Watcher) -> Answer[Assessed]:
     from rocking_cli.questions.building.view import columns, view, words
     from rocking_cli.verification.check import refuse
 
-    given, fields, folder = _read(asked.building, watch)
-    if asked.describe is not None:
-        _describe(asked.describe, fields, watch)
+    given, folder = _read(asked.building, watch)
     site = _site(asked, given, folder)
     language = language_of(asked.language, site, watch)
     say, requested = words(language), asked.requested
@@ -103,19 +101,18 @@ def building(asked: BuildingAsked, watch: Watcher) -> Answer[Assessed]:
     return Answer("building", result, view(result, designed, say), partial(columns, result, say), figure)
 
 
-def _read(given: Any, watch: Watcher) -> tuple[Building, Mapping[str, Any], Path]:
-    """Return a building, its fields, and the folder of the files that it names."""
+def _read(given: Any, watch: Watcher) -> tuple[Building, Path]:
+    """Return a building, and the folder of the files that it names."""
     from rocking_cli.io.json_text import json_text
     from rocking_cli.io.yaml_file import parse
     from rocking_cli.questions.building.description import HINT, building_of, read_building
 
     if isinstance(given, Mapping):
         document = parse(json_text(given), "building", "building", HINT)
-        return building_of(document), document.data, Path()
+        return building_of(document), Path()
     path = Path(given)
     if path.suffix.lower() not in TABLES:
-        made, document = read_building(path)
-        return made, document.data, path.parent
+        return read_building(path), path.parent
     from rocking_cli.io.spreadsheet import read_sheet
     from rocking_cli.questions.building.walls import USUAL_DENSITY, building_in
 
@@ -123,16 +120,7 @@ def _read(given: Any, watch: Watcher) -> tuple[Building, Mapping[str, Any], Path
     if fields["masonry"]["density"] == USUAL_DENSITY:
         watch.warn(f"{path} has no column density: {USUAL_DENSITY} is assumed of all walls")
     document = parse(json_text(fields), str(path), "building", HINT)
-    return building_of(document), document.data, path.parent
-
-
-def _describe(place: Path, fields: Mapping[str, Any], watch: Watcher) -> None:
-    from rocking_cli.io.files import write_whole
-    from rocking_cli.io.yaml_file import block
-
-    text = "\n".join([line for key, value in fields.items() for line in block(key, value)] + [""]).encode()
-    write_whole(place, lambda stream: stream.write(text))
-    watch.note(f"wrote {place}")
+    return building_of(document), path.parent
 
 
 def _site(asked: BuildingAsked, given: Building, folder: Path) -> Any:

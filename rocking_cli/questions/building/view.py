@@ -166,6 +166,9 @@ def notes(found: Assessed, say: Language) -> Iterator[str]:
         source = say("period_given" if found.period_given else "period_formula", T=found.period)
         later = {"T": LENGTHENED * found.period, "xi": 100 * LATER_DAMPING, "first": 100 * DAMPING}
         yield say("period", source=source, **later)
+    if found.shaken:
+        names = [title_of(row, say) for row in found.rows if row.made.name in found.shaken]
+        yield say("shaken", names=", ".join(names))
     yield say("covers")
 
 

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from rocking_cli.errors import InputError, Problem
-from rocking_cli.io.spreadsheet import Spreadsheet, unit_in
+from rocking_cli.io.spreadsheet import Spreadsheet, read_sheet, unit_in
 from rocking_cli.io.starters import italian
+from rocking_cli.io.yaml_file import block
 from rocking_cli.text import did_you_mean
+from rocking_cli.units import UnitError, mass_of_weight, read
 
 COLUMNS = {"name": "", "storey": "", "thickness": "m", "height": "m", "length": "m", "bears": "kg/m2", "span": "m",
            "density": "kg/m3"}  # fmt: skip
@@ -62,8 +65,6 @@ def building_in(sheet: Spreadsheet) -> dict[str, Any]:
 
 def _value(sheet: Spreadsheet, line: int, name: str, cell: str, unit: str) -> Any:
     """Return the value of a cell in the unit of its column."""
-    from rocking_cli.units import UnitError, mass_of_weight, read
-
     if name == "name":
         return cell
     number = sheet.number(cell)
@@ -117,3 +118,10 @@ def _fields(
         for k, ((level, load, span), names) in enumerate(sorted(floors.items()), 1)
     ]
     return {"levels": levels, "masonry": masonry, "walls": entries} | ({"floors": bearing} if bearing else {})
+
+
+def described(path: Path) -> str:
+    """Return the text of a building file that is made of a table of walls. Raises as `building_in`."""
+    fields = building_in(read_sheet(path))
+    above = f"# The building of {path.name}: add floors, ties, openings and what stands on the walls"
+    return "\n".join([above, *(line for key, value in fields.items() for line in block(key, value)), ""])

@@ -210,6 +210,13 @@ BUILDING, EDIFICIO = "building", "edificio"
     "for a code of practice.",
 )
 @click.option(
+    "--walls",
+    metavar="TABLE.csv",
+    shell_complete=completer("file"),
+    help="With `building`: a table of walls of which the file is made: name, storey, thickness, height, length, bears, "
+    "span.",
+)
+@click.option(
     "-o",
     "--out",
     type=click.Path(),
@@ -223,8 +230,9 @@ BUILDING, EDIFICIO = "building", "edificio"
 @as_json
 @click.pass_context
 def command(
-    ctx: click.Context, name: str | None, plugin: bool, code: str | None, out: str | None, language: str, as_json: bool
-) -> None:
+    ctx: click.Context, name: str | None, plugin: bool, code: str | None, walls: str | None, out: str | None,
+    language: str, as_json: bool,
+) -> None:  # fmt: skip
     """Print a commented template: a working structure file of the mechanism NAME, or a common structure.
 
     The common structures are facade, parapet, gable, pinnacle, corner, bell_cell, column_with_tendon and statue.
@@ -245,6 +253,8 @@ def command(
       rocking new study > study.yaml
       rocking new site > site.yaml
       rocking new site --code NTC2018 > site.yaml
+      rocking new building > house.yaml
+      rocking new building --walls walls.csv > house.yaml
       rocking new --plugin leaning_pier
       rocking new --plugin my_code --code
     """
@@ -263,7 +273,9 @@ def command(
         return
     if out is not None:
         raise click.UsageError("--out requires --plugin: without it the file is printed; redirect it with > FILE.")
-    made = _made(name, code, language, as_json=as_json)
+    if walls is not None and template_of(name) != BUILDING:
+        raise click.UsageError("--walls requires `building`: the file of a building is made of the table.")
+    made = _made(name, code, language, walls, as_json=as_json)
     if language != LANGUAGES[0] and BUILDING not in made:
         made["yaml"], missing = in_italian(made["yaml"])
         if missing:
@@ -274,7 +286,7 @@ def command(
         terminal.result(made["yaml"].rstrip("\n"))
 
 
-def _made(word: str, code: str | None, language: str, *, as_json: bool) -> dict[str, Any]:
+def _made(word: str, code: str | None, language: str, walls: str | None, *, as_json: bool) -> dict[str, Any]:
     """Return the kind and name of a template, and its text; a warning says if it does not work as it is."""
     from rocking_cli.plugins.registry import find
 
@@ -288,6 +300,10 @@ def _made(word: str, code: str | None, language: str, *, as_json: bool) -> dict[
         terminal.note(f"{word} is the template {name}")
     if name == STUDY:
         return {"study": STUDY, "yaml": starter(STUDY)}
+    if walls is not None:
+        from rocking_cli.questions.building.walls import described
+
+        return {"building": BUILDING, "yaml": described(Path(walls))}
     if name == BUILDING:
         return {"building": BUILDING, "yaml": starter(BUILDING if language == LANGUAGES[0] else EDIFICIO)}
     if name == SITE:
