@@ -21,6 +21,7 @@ TOPICS = {
     "histories, margins, maps, spectra": (4_500, "docs/histories.md"),
     "pages that answer": (700, "docs/explore.md"),
     "verification and sheet": (4_000, "docs/verification.md"),
+    "a building": (1_900, "docs/building.md"),
     "fragility": (3_500, "docs/fragility.md"),
     "survey and design": (1_800, "docs/survey.md"),
     "drawings and meshes": (3_000, "docs/import.md"),

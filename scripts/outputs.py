@@ -98,6 +98,9 @@ FOR_KEYS = (
     "overturning --compare examples/block.yaml examples/frame.yaml examples/wall.yaml --points 3 --json",
     "report examples/frame.yaml --json",
     "explore examples/block.yaml --pulse ricker:0.4g:1s --out page.html --json",
+    "building examples/building/tied_house.yaml --strengthened examples/building/house.yaml --json",
+    "building examples/building/tied_house.yaml --design 2 --json",
+    "new building --json",
     "import examples/drawings/church.dxf --merge-gap 12mm --depth 1 --density 2000 --json",
 )
 """Commands of which only the keys are held: their values depend on the machine, or others have the like."""

@@ -54,6 +54,12 @@ STUDY = {
     "limit_states": ["overturning"],
     "method": "stripes",
 }
+HOUSE = {
+    "levels": [0.0, 3.0], "masonry": {"density": 1800.0}, "rebound": 0.3,
+    "walls": [{"name": "long", "length": 5.0, "thickness": 0.5}, {"name": "short", "length": 4.0, "thickness": 0.3}],
+    "ties": [{"level": 1, "walls": ["short"], "length": 4.0, "bars": 1, "diameter": 0.012, "steel": "S235"}],
+    "roof": {"load": 200.0, "span": 4.0, "walls": ["long", "short"]},
+}  # fmt: skip
 OBSERVED = {
     "structure": [str(BLOCK_FILE)] * 4,
     "overturned": [0, 1, 1, 0],
@@ -224,6 +230,14 @@ CALLS = {
          "on_floor": True, "opening": 1.0, "restitution": 0.8, "language": "it", "project": "odd", "explore": True,
          "place": "odd", "client": "odd", "author": "odd", "logo": "in.svg", "origin": "odd"} | AROUND,
     ),
+    "building": (
+        {"building": HOUSE, "site": SITE, "motions": RECORD, "sheet": "s.html"},
+        {"building": HOUSE | {"name": "odd"}, "site": NTC, "strengthened": HOUSE | {"levels": [0.0, 2.9]}, "worst": 1,
+         "sets": {"SLC": PULSE}, "polarity": "both", "state": "SLC", "on_floor": True, "design": 1, "structures": "odd",
+         "sheet": None, "appendix": True, "motions": PULSE, "language": "it", "project": "odd", "place": "odd",
+         "client": "odd", "author": "odd", "logo": "in.svg", "origin": "odd", "out": "o.csv", "plot": "p.svg",
+         "separator": ";", "decimal": ","},
+    ),
     "explore": (
         {"structures": WEAK, "motions": STRONG, "neighbours": 2},
         {"structures": BLOCK, "motions": PULSE, "polarity": "-1", "opening": 1.0, "vary": "width=0.5m:0.72m",
@@ -231,7 +245,7 @@ CALLS = {
     ),
 }  # fmt: skip
 """A question of each verb, and an odd value of each of its arguments."""
-LONG = "report", "verify", "calibrate", "survey", "fragility", "overturning_map"
+LONG = "building", "report", "verify", "calibrate", "survey", "fragility", "overturning_map"
 """Verbs whose questions take longer: they are asked with the rest."""
 OF_A_KNOWN_MOTION = {"structure": OTHER, "motions": "sine:0.3g:0.2s"}, {"contact": True, "tail": 0.05, "rtol": 1e-5}
 """Arguments of `respond` that change nothing where friction is given, or where the outcome is unknown."""
@@ -247,6 +261,9 @@ IDLE = [
     ("verify", {"structure": BLOCK, "site": SITE},
      {"polarity": "-1", "opening": 0.1, "state": "SLC", "on_floor": True, "project": "odd", "place": "odd",
       "client": "odd", "author": "odd", "logo": "in.svg", "origin": "odd"}),
+    ("building", {"building": HOUSE, "site": SITE},
+     {"polarity": "-1", "state": "SLC", "on_floor": True, "worst": 1, "appendix": True, "project": "odd",
+      "place": "odd", "client": "odd", "author": "odd", "logo": "in.svg", "origin": "odd"}),
     ("report", {"structure": BLOCK},
      {"explore": True, "polarity": "-1", "opening": 0.1, "state": "SLC", "on_floor": True} | AROUND),
     ("pulse", {"a": 4.0, "omega": 6.0},

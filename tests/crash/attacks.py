@@ -42,6 +42,7 @@ LINES = {
     "margin": f"margin {BLOCK} {UNDER} --out o.csv --plot p.png",
     "demand": f"demand {SITE} --out o.csv --plot p.png",
     "verify": f"verify {BLOCK} --site {SITE} --plot p.png --sheet s.html",
+    "building": f"building INPUTS/house.yaml --site {SITE} --out o.csv --plot p.png --sheet s.html --structures folder",
     "survey": f"survey INPUTS/table.csv {UNDER} --out o.csv --page p.html --map m.png --plot p.png",
     "sheets": f"survey INPUTS/table.csv --site {SITE} --sheets folder",
     "design": f"design {BLOCK} --vary width=0.5:0.9 --until lambda>=0.2 --points 3 --out o.csv --plot p.png",
@@ -75,6 +76,7 @@ INPUTS = {
     "  low: {polygon: [[0, 0], [0.6, 0], [0.6, 1], [0, 1]]}\n  top: {polygon: [[0, 1], [0.6, 1], [0.6, 3], [0, 3]]}\n"
     "ground:\n  base: {polygon: [[-1, -1], [2, -1], [2, 0], [-1, 0]]}\n",
     "trace.csv": "".join((EXAMPLES / "calibrate" / "trace.csv").read_text("utf-8").splitlines(keepends=True)[:250]),
+    "house.yaml": "levels: [0, 3]\nmasonry: {density: 1800}\nwalls: [{name: wall, length: 5, thickness: 0.5}]\n",
     "short.yaml": "mechanism: block\nwidth: 1\nheight: 2\nname: short\n",
     "table.csv": "mechanism,name,width,height,longitude,latitude\nblock,low,0.5,1.5,10,45\nblock,high,0.4,2,10.1,45\n",
     "free.yaml": "structures: [short.yaml]\nrecords: [{pulse: sine:0.9g:0.3s}]\nmethod: stripes\nengine: blocks\n"
