@@ -109,7 +109,7 @@ class DesignAsked(OfStructure, Sought, MaybeUnderMotions, Around, OfJoints, With
         SITE,
     )  # fmt: skip
     out: Path | None = table_file(
-        "Write the scanned values and the metric at each (.csv or .parquet).", ".csv", ".parquet"
+        "Write the scanned values and the metric at each", ".parquet"
     )
     plot: Path | None = plot_file("Plot the metric against the field")
     idle = (

@@ -141,15 +141,15 @@ class SheetFolder:
         The folder, created if missing.
     asked : SurveyAsked
         The survey: its site as it was given, format and heading of the sheets.
-    site : SiteFile
-        The site.
+    site : SiteFile or None
+        The site of structures that have no other.
     language : str
         Language of the sheets.
     """
 
     path: Path
     asked: SurveyAsked
-    site: SiteFile
+    site: SiteFile | None
     language: str
 
     @property
@@ -157,10 +157,14 @@ class SheetFolder:
         """Suffix of the sheets."""
         return f".{self.asked.sheet_format}"
 
-    def check(self) -> None:
-        """Raise `InputError`, before any work, if sheets cannot be written, or the folder has files of others."""
+    def check(self, first: SiteFile | None) -> None:
+        """Raise `InputError`, before any work, if sheets cannot be written, or the folder has files of others.
+
+        `first` is the first site of the survey; None if none can be used.
+        """
         place = folder(str(self.path))
-        sheets.check(place / f"structure{self.suffix}", self.site, self.language)
+        if first is not None:
+            sheets.check(place / f"structure{self.suffix}", first, self.language)
         check_writable(place / LIST_FILE)
         discard(place)
         known = self._listed()
@@ -208,15 +212,17 @@ class SheetFolder:
         watch.note(f"wrote {what} and {LIST_FILE} to {self.path.resolve()}")
 
     def _sheet(self, found: Survey, entry: SurveyEntry) -> bytes:
-        assert self.asked.site is not None
-        site, made = of_each(self.site), entry.make()
+        site, made = entry.site(self.site), entry.make()
+        assert site is not None
+        given = self.asked.site if site is self.site else site.document.data if site.changed else site.document.file
+        site = of_each(site)
         structure = Structure(made.weaker_side() or made)
         verification = verify(structure, site)
         source = f"{Path(found.sheet.file).name}, line {entry.line}" if found.sheet is not None else structure.name
         call = self.asked.origin or "rocking_cli.survey(...)"
         origin = sheets.SheetOrigin(call, File(source, yaml_of(structure.mechanism).encode()))
         title = self.asked.title(call, self.language)
-        content = sheets.sheet_for(verification, site, self.asked.site, [], self.language, title, origin)
+        content = sheets.sheet_for(verification, site, given, [], self.language, title, origin)
         return sheets.rendered(content, self.suffix)
 
     def _listed(self) -> set[str]:
