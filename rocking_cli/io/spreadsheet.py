@@ -134,11 +134,10 @@ def _of_book(raw: bytes, file: str) -> Spreadsheet:
     texts = [cell.strip() for row in rows for cell in row if isinstance(cell, str)]
     sign = "," if any(map(DECIMAL_COMMA.fullmatch, texts)) else "."  # numbers get the sign of those typed as text
     cells = [
-        [_text(cell).replace(".", sign) if isinstance(cell, float) else _text(cell).strip() for cell in row]
-        for row in rows
+        [_text(cell).replace(".", sign) if isinstance(cell, float) else _text(cell) for cell in row] for row in rows
     ]
     lines = ((k, row) for k, row in enumerate(cells, 1) if any(row))
-    table = _table(lines, f"{file}, sheet {one_line(name)}" if len(sheets) > 1 else file, "\t", "UTF-8")
+    table = _table(lines, f"{file}, {one_line(name)}" if len(sheets) > 1 else file, "\t", "UTF-8")
     return replace(table, unread=tuple(sheets)[1:])
 
 
@@ -228,12 +227,13 @@ def sheets_of(data: bytes, file: str) -> dict[str, list[list[str]]]:
 
     Raises `InputError` if python-calamine is not installed or cannot read the spreadsheet.
     """
-    return {name: [list(map(_text, row)) for row in rows] for name, rows in _sheets(data, file).items()}
+    sheets = _sheets(data, file).items()
+    return {name: [[one_line(_text(cell)) for cell in row] for row in rows] for name, rows in sheets}
 
 
 def _text(cell: object) -> str:
     """Return a cell as text, numbers as a CSV file has them: 300 for 300.0."""
-    return repr(cell).removesuffix(".0") if isinstance(cell, float) else one_line(str(cell))
+    return repr(cell).removesuffix(".0") if isinstance(cell, float) else str(cell).strip()
 
 
 def _sheets(data: bytes, file: str) -> dict[str, list[list[Any]]]:

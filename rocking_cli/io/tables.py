@@ -8,6 +8,7 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from importlib.util import find_spec
+from itertools import chain
 from math import isfinite
 from pathlib import Path
 from typing import BinaryIO
@@ -74,8 +75,9 @@ def write_table(
     ----------
     path : Path
         Path of the file. If it ends in .parquet, a Parquet file at full precision is written, with a row group for each
-        block and null for NaN; if in .xlsx, a sheet with numbers as numbers and an empty cell for NaN; otherwise text with nine digits, an empty field for NaN, and an apostrophe before names,
-        texts and headings that a spreadsheet would compute.
+        block and null for NaN; if it ends in .xlsx, a sheet with an empty cell for NaN; otherwise text with nine
+        digits, an empty field for NaN, and an apostrophe before names, texts and headings that a spreadsheet would
+        compute.
     blocks : iterable of mapping of str to sequence
         Blocks of rows, all with the same columns; a column has words, integers or reals.
     separator, decimal : str
@@ -150,15 +152,16 @@ def _write_parquet(stream: BinaryIO, blocks: Iterable[Columns]) -> None:
 def _write_xlsx(stream: BinaryIO, blocks: Iterable[Columns]) -> None:
     from xlsxwriter import Workbook
 
-    book = Workbook(stream, {"constant_memory": True})
-    sheet, line = book.add_worksheet(), 0
-    sheet.freeze_panes(1, 0)
-    for k, columns in enumerate(blocks):
-        rows = zip(*columns.values(), strict=True)
-        for line, row in enumerate([columns, *rows] if k == 0 else rows, line + (k > 0)):
+    with Workbook(stream, {"constant_memory": True}) as book:  # also removes its temporary files after an error
+        sheet = book.add_worksheet()
+        sheet.freeze_panes(1, 0)
+        blocks = iter(blocks)
+        first = next(blocks)
+        tables = (zip(*columns.values(), strict=True) for columns in chain([first], blocks))
+        for line, row in enumerate(chain([first], chain.from_iterable(tables))):
             if line >= MAX_SHEET_ROWS:
-                hint = "give a name that ends in .csv or .parquet"
-                raise InputError(Problem(f"a sheet has at most {MAX_SHEET_ROWS:,} rows: too few for this table", hint=hint))
+                what = f"the table has more than the {MAX_SHEET_ROWS:,} rows of a sheet"
+                raise InputError(Problem(what, hint="give a name that ends in .csv"))
             for place, value in enumerate(row):
                 if isinstance(value, bool | np.bool_):
                     sheet.write_boolean(line, place, bool(value))
@@ -166,4 +169,3 @@ def _write_xlsx(stream: BinaryIO, blocks: Iterable[Columns]) -> None:
                     sheet.write_number(line, place, value + 0.0)
                 elif value is not None and value == value:
                     sheet.write_string(line, place, printable(str(value)))
-    book.close()

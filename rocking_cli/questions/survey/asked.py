@@ -58,8 +58,8 @@ class SurveyAsked(MaybeUnderMotions, OfJoints, Around, InLanguage, Identity, Wit
 
     writes_each: ClassVar[bool] = True  # the table before the sheets, which take longer and may fail
     structures: str | Path | Mapping[str, Sequence[Any]] | StructureTable | Sequence[StructureLike] = option(
-        "A table of structures as CSV, .xlsx, .xls or .ods, or its columns by their headings (a frame of pandas is one); or "
-        "structures, or their YAML files.",
+        "A table of structures as CSV, .xlsx, .xls or .ods, or its columns by their headings (a frame of pandas is "
+        "one); or structures, or their YAML files.",
         where="input", default=..., typed="TABLE.csv",
     )  # fmt: skip
     site: SiteLike | None = option(

@@ -12,7 +12,7 @@ from unicodedata import normalize
 
 from markupsafe import Markup, escape
 
-from rocking_cli.ask.inputs import yaml_of
+from rocking_cli.ask.inputs import SiteLike, yaml_of
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.documents.figures import dark_figures, inline_svg, template
 from rocking_cli.errors import InputError, Problem, Refused, RockingError
@@ -214,7 +214,9 @@ class SheetFolder:
     def _sheet(self, found: Survey, entry: SurveyEntry) -> bytes:
         site, made = entry.site(self.site), entry.make()
         assert site is not None
-        given = self.asked.site if site is self.site else site.document.data if site.changed else site.document.file
+        given: SiteLike = site.document.data if site.changed else site.document.file
+        if self.asked.site is not None and site is self.site:
+            given = self.asked.site
         site = of_each(site)
         structure = Structure(made.weaker_side() or made)
         verification = verify(structure, site)

@@ -23,7 +23,7 @@ from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_file import TEMPLATE_HINT, of_document
 from rocking_cli.errors import InputError, MechanismError, Problem, named
-from rocking_cli.io.field_problems import MEANINGS, by_meaning, fields_at, lists_models, types_at
+from rocking_cli.io.field_problems import MEANINGS, by_meaning, fields_at, is_plural, lists_models, types_at
 from rocking_cli.io.spreadsheet import DECIMAL_COMMA, NUMBER, THOUSANDS, Row, Spreadsheet, unit_in
 from rocking_cli.io.starters import italian
 from rocking_cli.io.yaml_file import Document, Place, closed, parse, put, read_text, replace_at, spell, words
@@ -77,7 +77,8 @@ class FieldColumn:
         """Return the field of a mechanism or site: `spessore` is the thickness of a wall, and the width of a block."""
         first, *others = self.english
         if first == "thickness" != self.path[0] and cls is not None and first not in cls.model_fields:
-            first = next((each for each in MEANINGS[first] if float in _types(cls, (each,))), first)
+            meant = (each for each in MEANINGS[first] if each in cls.model_fields and not is_plural(cls, (each,)))
+            first = next(meant, first)
         return (first, *others)
 
 
@@ -358,8 +359,9 @@ class TableRow:
             what = f"must be {GROUND} or fields such as {{z: 6 m}}, got {cut(repr(floor))}"
             raise InputError(document.problem(what, None, heading, "or give the height in a column z"))
         document.data[FLOOR] = None if floor == GROUND else floor
-        required = {name for name, info in fields_at(type(site.site), (FLOOR,)).items() if info.is_required()}
-        if floor != GROUND and (lacks := sorted(required - floor.keys())):
+        fields = fields_at(type(site.site), (FLOOR,)).items()
+        lacks = [name for name, info in fields if info.is_required() and floor != GROUND and name not in floor]
+        if lacks:
             what = f"needs the building, of which {document.base} lacks {', '.join(lacks)}"
             hint = f"add `{FLOOR}: {{{', '.join(f'{name}: ...' for name in lacks)}}}` to it"
             raise InputError(document.problem(what, None, heading, hint))
@@ -372,7 +374,7 @@ class TableRow:
         except InputError as error:
             first = error.problems[0]
             line = f"{first.line}: " if first.line is not None else ""
-            message = f"{cut(one_line(file))}: {line}{first.message}"
+            message = f"{cut(one_line(file))}: {line}{Problem(first.message, field=first.field)}"
             raise InputError(document.problem(message, None, self.table.by_word[column].heading, first.hint)) from None
 
     def _class_in(self, document: _RowDocument) -> type[Mechanism] | None:

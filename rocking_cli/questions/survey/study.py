@@ -373,8 +373,7 @@ def survey(
 
 
 class Setting(NamedTuple):
-    """What all structures have in common: ground motions, polarities, neighbours, whether a code
-    verifies them, the site of those that have no other, `opening`, and `cautions`."""
+    """What structures have in common, such as whether codes verify them, and the site of those without another."""
 
     motions: Sequence[GroundMotion]
     polarities: Sequence[int]

@@ -69,8 +69,6 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
     if asked.sheets is not None and not by_code:
         raise InputError(f"{named('sheets')} requires a site to verify at: give {named('site')}")
     shaken = [each.motion.scaled(each.factor) for each in requested.gather(0.0, watch)] if requested else []
-    if shaken and getattr(entries, "of_floor", ()):
-        watch.warn("motions are the same for all rows: the columns of floors only concern the code")
     writer = None
     if asked.sheets is not None:
         from rocking_cli.questions.survey.pages import SheetFolder
@@ -142,7 +140,7 @@ def _entries(given: Any, watch: Watcher) -> Sequence[SurveyEntry]:
     if table.sheet.encoding == "Windows-1252":
         watch.note(f"{table.sheet.file} is not in UTF-8: read as Windows-1252")
     if others := table.sheet.unread:
-        watch.note(f"{table.sheet.file}: not read: {', '.join(map(one_line, others))}")
+        watch.note(f"table: {table.sheet.file}; sheets not read: {', '.join(map(one_line, others))}")
     if short := [row.line for row in table.sheet.rows if row.short]:
         lines = f"line {short[0]}" if len(short) == 1 else f"{len(short):,} lines, first in line {short[0]}"
         watch.warn(f"{table.sheet.file}: fewer cells than headings in {lines}: missing cells are read as empty")
@@ -157,7 +155,8 @@ def _first_site(entries: Sequence[SurveyEntry], where: SiteFile | None) -> SiteF
         return where
     if entries.of_floor and not entries.sites:
         hint = f"give {named('site')}, or a column site with a site file for each row"
-        raise InputError(Problem("requires a site", entries.sheet.file, field=entries.of_floor[0].heading, hint=hint))
+        sheet, heading = entries.sheet, entries.of_floor[0].heading
+        raise InputError(Problem("requires a site", sheet.file, sheet.line, field=heading, hint=hint))
     return entries.first_site()
 
 

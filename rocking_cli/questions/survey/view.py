@@ -370,6 +370,8 @@ def sentences(found: Survey, top: int | None = None, say: Language = ENGLISH) ->
     lines.append(Aside(f"Ranked {ranked}."))
     if found.pga:
         lines.append(" ".join(_of_peaks(found)))
+    if found.motions and any(row.z for row in rows):
+        lines.append("The motions are the same at every height z: the floors of a site only concern its code.")
     if found.motions:
         lines.append(Aside(
             "Time histories are by the nonlinear model. The peak is the largest rotation over the critical rotation "
