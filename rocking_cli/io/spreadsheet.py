@@ -8,7 +8,7 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -131,8 +131,8 @@ def _of_book(raw: bytes, file: str) -> Spreadsheet:
     """Return the first sheet of a spreadsheet that is not empty; if there are several, its name is that of the file."""
     sheets = _sheets(raw, file)
     name, rows = next(iter(sheets.items()), ("", []))
-    texts = [cell.strip() for row in rows for cell in row if isinstance(cell, str)]
-    sign = "," if any(map(DECIMAL_COMMA.fullmatch, texts)) else "."  # numbers get the sign of those typed as text
+    typed = (cell for row in rows for cell in row if isinstance(cell, str))
+    sign = "," if _has_commas(typed) else "."  # numbers get the sign of those typed as text
     cells = [
         [_text(cell).replace(".", sign) if isinstance(cell, float) else _text(cell) for cell in row] for row in rows
     ]
@@ -151,9 +151,14 @@ def _table(lines: Iterator[tuple[int, list[str]]], file: str, separator: str, en
         headings = headings[:-1]
     _check_headings(headings, file, line)
     rows = tuple(_row(number, cells, len(headings)) for number, cells in lines)
-    cells = (part for row in rows for cell in row.cells if "," in cell for part in cell.strip("[]").split(";"))
-    comma = separator != "," and any(DECIMAL_COMMA.fullmatch(cell.strip()) for cell in cells)
+    comma = separator != "," and _has_commas(cell for row in rows for cell in row.cells)
     return Spreadsheet(file, line, tuple(headings), rows, comma, separator, encoding)
+
+
+def _has_commas(cells: Iterable[str]) -> bool:
+    """Return whether a cell is a number with a decimal comma, or a list of such numbers."""
+    parts = (part for cell in cells if "," in cell for part in cell.strip("[]").split(";"))
+    return any(DECIMAL_COMMA.fullmatch(part.strip()) for part in parts)
 
 
 def decoded(raw: bytes, file: str) -> tuple[str, str]:
