@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from hashlib import sha256
 from pathlib import Path
@@ -217,10 +217,12 @@ class SheetFolder:
         given: SiteLike = site.document.data if site.changed else site.document.file
         if self.asked.site is not None and site is self.site:
             given = self.asked.site
-        site = of_each(site)
         structure = Structure(made.weaker_side() or made)
-        verification = verify(structure, site)
         source = f"{Path(found.sheet.file).name}, line {entry.line}" if found.sheet is not None else structure.name
+        if site.changed:  # as a file it has the fields of both
+            site = replace(site, document=replace(site.document, file=f"{site.document.file} + {source}"))
+        site = of_each(site)
+        verification = verify(structure, site)
         call = self.asked.origin or "rocking_cli.survey(...)"
         origin = sheets.SheetOrigin(call, File(source, yaml_of(structure.mechanism).encode()))
         title = self.asked.title(call, self.language)

@@ -44,7 +44,7 @@ def alone(floor=None, width=0.3, height=2.0):
     return verify(Structure(rk.Block(width=width, height=height)), site_of(site)).ratio
 
 
-def said(*arguments, code=2):
+def told(*arguments, code=2):
     return " ".join(run(*arguments, code=code).stderr.split())
 
 
@@ -106,7 +106,7 @@ class TestFloors:
         assert words.count("ground.yaml") == 1
 
     def test_floors_without_a_site_are_refused(self):
-        words = said("survey", table(["z"], "block,a,0.3,2,6"))
+        words = told("survey", table(["z"], "block,a,0.3,2,6"))
         assert "t.csv:1: z requires a site give --site, or a column site with a site file for each row" in words
 
     def test_that_motions_are_the_same_on_all_floors_is_stated(self):
@@ -199,14 +199,15 @@ class TestSheets:
         parts = [Path(each).read_text("utf-8").split('id="inputs"') for each in ("sh/a.html", "v.html")]
         assert parts[0][0] == parts[1][0]
         listed = {name: Path(f"sh/{name}.html").read_text("utf-8").split('id="inputs"')[1] for name in "abc"}
-        assert "&#34;z&#34;: 8" in listed["a"] and "ground.yaml" in listed["b"] and "floor.yaml" in listed["c"]
-        assert "floor.yaml" not in listed["b"].replace("--site floor.yaml", "")
+        assert "&#34;z&#34;: 8" in listed["a"] and "floor.yaml + t.csv, line 2" in listed["a"]
+        files = {name: text.replace("--site floor.yaml", "") for name, text in listed.items()}
+        assert ["floor.yaml" in files[name] for name in "abc"] == [True, False, True] and "ground.yaml" in files["b"]
 
     def test_sheets_need_a_site_of_some_row(self):
         file = table(["site"], "block,a,0.3,2,ground.yaml")
         run("survey", file, "--sheets", "sh")
         assert Path("sh/a.html").is_file()
-        assert "--sheets requires a site to verify at: give --site" in said(
+        assert "--sheets requires a site to verify at: give --site" in told(
             "survey", table([], "block,a,0.3,2"), "--sheets", "sh"
         )
 
@@ -255,7 +256,7 @@ class TestItalian:
     )
     def test_columns_of_one_field_are_refused_with_both_names(self, headings, words):
         Path("t.csv").write_text(f"{headings}\nblock,1,1,1,1\n", encoding="utf-8")
-        assert words in said("survey", "t.csv")
+        assert words in told("survey", "t.csv")
 
     def test_two_cells_for_the_thickness_of_a_row_are_refused(self):
         rows = "block,a,0.3,2,0.4", "block,b,0.3,2,", "rigid_body,c,,,1", "block,d,,2,0.3"
