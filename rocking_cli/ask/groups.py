@@ -352,9 +352,9 @@ class WithTable(AskedModel):
 
 
 def table_file(text: str, *suffixes: str) -> Any:
-    """Declare the table that a question writes, `out`."""
-    suffixes = suffixes or (".csv",)
-    return option(text + ("  - is standard output." if ".csv" in suffixes else ""), output(*suffixes))
+    """Declare the table that a question writes, `out`, as text or .xlsx, or as a file of other `suffixes`."""
+    suffixes = (".csv", *suffixes)
+    return option(f"{text} ({', '.join(suffixes)} or .xlsx).  - is standard output.", output(*suffixes, ".xlsx"))
 
 
 def plot_file(text: str, **more: Any) -> Any:

@@ -8,9 +8,10 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.files import read_bytes
@@ -69,6 +70,8 @@ class Spreadsheet:
         What separates the cells.
     encoding : str
         Encoding of the file: "UTF-8", "UTF-16" or "Windows-1252".
+    unread : tuple of str
+        Names of the other sheets of a spreadsheet that have cells.
     """
 
     file: str
@@ -78,6 +81,7 @@ class Spreadsheet:
     decimal_comma: bool
     separator: str = ","
     encoding: str = "UTF-8"
+    unread: tuple[str, ...] = ()
 
     @property
     def columns(self) -> dict[int, str]:
@@ -112,13 +116,33 @@ def read_sheet(path: Path) -> Spreadsheet:
 
 def parse_sheet(raw: bytes, file: str) -> Spreadsheet:
     """Return the table in the content of a file; `file` is its name in messages. Raises as `read_sheet`."""
+    if raw.startswith(SPREADSHEETS):
+        return _of_book(raw, file)
     (text, encoding), skipped = decoded(raw, file), 0
     if declared := re.match(r"(?i)\s*\"?sep=(.)\"?\r?\n", text):  # some spreadsheets declare their separator
         text, skipped = text[declared.end() :], declared[0].count("\n")
     first = next((line for line in _LINE_END.split(text[:100_000]) if line.strip(" \t,;")), "")
     bare = re.sub(r'"[^"]*"|\[[^\]]*\]', "", first)
     separator = declared[1] if declared else max(SEPARATORS, key=bare.count)
-    lines = _cells(text, separator, file, skipped)
+    return _table(_cells(text, separator, file, skipped), file, separator, encoding)
+
+
+def _of_book(raw: bytes, file: str) -> Spreadsheet:
+    """Return the first sheet of a spreadsheet that is not empty; if there are several, its name is that of the file."""
+    sheets = _sheets(raw, file)
+    name, rows = next(iter(sheets.items()), ("", []))
+    typed = (cell for row in rows for cell in row if isinstance(cell, str))
+    sign = "," if _has_commas(typed) else "."  # numbers get the sign of those typed as text
+    cells = [
+        [_text(cell).replace(".", sign) if isinstance(cell, float) else _text(cell) for cell in row] for row in rows
+    ]
+    lines = ((k, row) for k, row in enumerate(cells, 1) if any(row))
+    table = _table(lines, f"{file}, {one_line(name)}" if len(sheets) > 1 else file, "\t", "UTF-8")
+    return replace(table, unread=tuple(sheets)[1:])
+
+
+def _table(lines: Iterator[tuple[int, list[str]]], file: str, separator: str, encoding: str) -> Spreadsheet:
+    """Return a table of its rows that are not blank, each with its line, of which the first has the headings."""
     try:
         line, headings = next(lines)
     except StopIteration:
@@ -127,9 +151,14 @@ def parse_sheet(raw: bytes, file: str) -> Spreadsheet:
         headings = headings[:-1]
     _check_headings(headings, file, line)
     rows = tuple(_row(number, cells, len(headings)) for number, cells in lines)
-    cells = (part for row in rows for cell in row.cells if "," in cell for part in cell.strip("[]").split(";"))
-    comma = separator != "," and any(DECIMAL_COMMA.fullmatch(cell.strip()) for cell in cells)
+    comma = separator != "," and _has_commas(cell for row in rows for cell in row.cells)
     return Spreadsheet(file, line, tuple(headings), rows, comma, separator, encoding)
+
+
+def _has_commas(cells: Iterable[str]) -> bool:
+    """Return whether a cell is a number with a decimal comma, or a list of such numbers."""
+    parts = (part for cell in cells if "," in cell for part in cell.strip("[]").split(";"))
+    return any(DECIMAL_COMMA.fullmatch(part.strip()) for part in parts)
 
 
 def decoded(raw: bytes, file: str) -> tuple[str, str]:
@@ -195,6 +224,7 @@ def _row(line: int, cells: list[str], count: int) -> Row:
 
 OLE = b"\xd0\xcf\x11\xe0"
 """First bytes of a spreadsheet of the older kind (.xls); the others are zip archives."""
+SPREADSHEETS = (b"PK\x03\x04", OLE)
 
 
 def sheets_of(data: bytes, file: str) -> dict[str, list[list[str]]]:
@@ -202,6 +232,17 @@ def sheets_of(data: bytes, file: str) -> dict[str, list[list[str]]]:
 
     Raises `InputError` if python-calamine is not installed or cannot read the spreadsheet.
     """
+    sheets = _sheets(data, file).items()
+    return {name: [[one_line(_text(cell)) for cell in row] for row in rows] for name, rows in sheets}
+
+
+def _text(cell: object) -> str:
+    """Return a cell as text, numbers as a CSV file has them: 300 for 300.0."""
+    return repr(cell).removesuffix(".0") if isinstance(cell, float) else str(cell).strip()
+
+
+def _sheets(data: bytes, file: str) -> dict[str, list[list[Any]]]:
+    """Return the rows of each sheet, see `sheets_of`; a cell merged over several rows has its value in each of them."""
     try:
         from python_calamine import CalamineError, CalamineWorkbook
     except ImportError:
@@ -209,13 +250,16 @@ def sheets_of(data: bytes, file: str) -> dict[str, list[list[str]]]:
         raise InputError(Problem("is a spreadsheet, which needs another package", file, hint=hint)) from None
     try:
         book = CalamineWorkbook.from_filelike(io.BytesIO(data))
-        sheets = {name: book.get_sheet_by_name(name).to_python(skip_empty_area=False) for name in book.sheet_names}
+        sheets = {name: book.get_sheet_by_name(name) for name in book.sheet_names}
+        read = {name: sheet.to_python(skip_empty_area=False) for name, sheet in sheets.items()}
     except CalamineError as error:
         raise InputError(Problem(f"the spreadsheet cannot be read: {error}", file)) from None
     by_name = {}
-    for name, rows in sheets.items():
-        texts = [[str(cell) if isinstance(cell, float) else one_line(str(cell)) for cell in row] for row in rows]
-        left = min((k for row in texts for k, cell in enumerate(row) if cell), default=None)
+    for name, rows in read.items():
+        for (top, k), (bottom, _) in sheets[name].merged_cell_ranges or ():
+            for row in rows[top + 1 : bottom + 1]:
+                row[k] = rows[top][k] if any(cell != "" for cell in row) else ""
+        left = min((k for row in rows for k, cell in enumerate(row) if _text(cell)), default=None)
         if left is not None:
-            by_name[name] = [row[left:] for row in texts]
+            by_name[name] = [row[left:] for row in rows]
     return by_name

@@ -1,4 +1,4 @@
-"""Tables as files, CSV or Parquet by the extension of the file name, written in blocks of rows."""
+"""Tables as files, CSV, Parquet or .xlsx by the extension of the file name, written in blocks of rows."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
 from importlib.util import find_spec
+from itertools import chain
+from math import isfinite
 from pathlib import Path
 from typing import BinaryIO
 
@@ -18,7 +20,10 @@ from rocking_cli.io.files import write_whole
 from rocking_cli.text import keeps_formulas, printable
 
 Columns = Mapping[str, "Sequence[object] | np.ndarray"]
-PARQUET = ".parquet"
+PARQUET, XLSX = ".parquet", ".xlsx"
+NEEDED = {PARQUET: ("pyarrow", "parquet"), XLSX: ("xlsxwriter", "spreadsheet")}
+"""Package that writes a kind of file, and the extra that installs it."""
+MAX_SHEET_ROWS = 1_048_576
 ROWS_PER_BLOCK = 4_000  # written at a time, so that the text of a large table is never in memory
 _NUMBER = r"[-+]?[\d.,]+(?:[eE][-+]?\d+)?"
 _FORMULA = re.compile(rf"\s*(?!{_NUMBER}(?:\s*;\s*{_NUMBER})*\Z)[=+\-@].", re.ASCII)
@@ -53,10 +58,12 @@ def column_of(values: object) -> np.ndarray:
 
 
 def check_table(path: Path | None) -> None:
-    """Raise `InputError`, before any work, if a Parquet file is requested without pyarrow installed."""
-    if path is not None and path.suffix.lower() == PARQUET and find_spec("pyarrow") is None:
-        hint = "pip install 'rocking-cli[parquet]', or give a name that ends in .csv"
-        raise InputError(Problem("Parquet needs the package pyarrow, which is not installed", str(path), hint=hint))
+    """Raise `InputError`, before any work, if a kind of file is requested whose package is not installed."""
+    suffix = path.suffix.lower() if path is not None else ""
+    package, extra = NEEDED.get(suffix, ("", ""))
+    if package and find_spec(package) is None:
+        hint = f"pip install 'rocking-cli[{extra}]', or give a name that ends in .csv"
+        raise InputError(Problem(f"{suffix} needs the package {package}, which is not installed", str(path), hint=hint))
 
 
 def write_table(
@@ -68,8 +75,9 @@ def write_table(
     ----------
     path : Path
         Path of the file. If it ends in .parquet, a Parquet file at full precision is written, with a row group for each
-        block and null for NaN; otherwise text with nine digits, an empty field for NaN, and an apostrophe before names,
-        texts and headings that a spreadsheet would compute.
+        block and null for NaN; if it ends in .xlsx, a sheet with an empty cell for NaN; otherwise text with nine
+        digits, an empty field for NaN, and an apostrophe before names, texts and headings that a spreadsheet would
+        compute.
     blocks : iterable of mapping of str to sequence
         Blocks of rows, all with the same columns; a column has words, integers or reals.
     separator, decimal : str
@@ -78,7 +86,7 @@ def write_table(
         Whether a text begins with the byte order mark, by which spreadsheets know UTF-8.
     """
     text = partial(write_csv, separator=separator, decimal=decimal, mark=mark)
-    write = _write_parquet if path.suffix.lower() == PARQUET else text
+    write = {PARQUET: _write_parquet, XLSX: _write_xlsx}.get(path.suffix.lower(), text)
     write_whole(path, lambda stream: write(stream, blocks))
 
 
@@ -139,3 +147,25 @@ def _write_parquet(stream: BinaryIO, blocks: Iterable[Columns]) -> None:
         writer.write_table(batch.cast(writer.schema))
     if writer is not None:
         writer.close()
+
+
+def _write_xlsx(stream: BinaryIO, blocks: Iterable[Columns]) -> None:
+    from xlsxwriter import Workbook
+
+    with Workbook(stream, {"constant_memory": True}) as book:  # also removes its temporary files after an error
+        sheet = book.add_worksheet()
+        sheet.freeze_panes(1, 0)
+        blocks = iter(blocks)
+        first = next(blocks)
+        tables = (zip(*columns.values(), strict=True) for columns in chain([first], blocks))
+        for line, row in enumerate(chain([first], chain.from_iterable(tables))):
+            if line >= MAX_SHEET_ROWS:
+                what = f"the table has more than the {MAX_SHEET_ROWS:,} rows of a sheet"
+                raise InputError(Problem(what, hint="give a name that ends in .csv"))
+            for place, value in enumerate(row):
+                if isinstance(value, bool | np.bool_):
+                    sheet.write_boolean(line, place, bool(value))
+                elif isinstance(value, int | float | np.number) and isfinite(value):
+                    sheet.write_number(line, place, value + 0.0)
+                elif value is not None and value == value:
+                    sheet.write_string(line, place, printable(str(value)))

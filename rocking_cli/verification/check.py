@@ -34,13 +34,15 @@ def read_site(path: Path) -> SiteFile:
     return site_in(parse(read_text(path, "site"), str(path), "site", SITE_HINT))
 
 
-def site_in(document: Document) -> SiteFile:
+def site_in(document: Document, folder: Path | None = None) -> SiteFile:
     """Return the site in a parsed file.
 
     Parameters
     ----------
     document : Document
         The file.
+    folder : Path, optional
+        Folder of the files that it names; by default its own.
 
     Raises
     ------
@@ -64,7 +66,7 @@ def site_in(document: Document) -> SiteFile:
     assert site is not None  # a file without a valid site was refused
     file = SiteFile(site, document)
     try:
-        return replace(file, site=codes()[code].located(site, Path(document.file).parent))
+        return replace(file, site=codes()[code].located(site, folder or Path(document.file).parent))
     except InputError as error:
         raise file.placed(error) from None
 

@@ -193,10 +193,13 @@ class SiteFile:
         The site.
     document : Document
         The file.
+    changed : bool
+        Whether fields of the site are not those of the file.
     """
 
     site: Site
     document: Document
+    changed: bool = False
 
     def placed(self, error: InputError) -> InputError:
         """Return an error with its problems; those of fields of the site get their place in the file."""

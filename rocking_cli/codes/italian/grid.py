@@ -23,13 +23,13 @@ from numpy.typing import NDArray
 from rocking_cli.arrays import Reals
 from rocking_cli.errors import InputError, Problem
 from rocking_cli.io.files import read_at_most, read_bytes
-from rocking_cli.io.spreadsheet import sheets_of
+from rocking_cli.io.spreadsheet import SPREADSHEETS, sheets_of
 from rocking_cli.text import cut, one_line
 
 EARTH_RADIUS = 6371.0  # km
 MAX_BYTES = 100_000_000  # the table of the decree has three million
 MAX_HEADING_ROWS = 50  # rows of a sheet in which its headings are searched
-GZIP, SPREADSHEETS = b"\x1f\x8b", (b"PK", b"\xd0\xcf\x11\xe0")
+GZIP = b"\x1f\x8b"
 NEIGHBOURS = 25  # nodes about a site, among which the steps of the grid are measured
 MAX_ALONG = 0.35  # cosine of the angle between the two directions of the grid, which is 70 to 110 degrees
 ON_EDGE = 1e-9  # share of a cell by which rounding may put a site on its edge outside

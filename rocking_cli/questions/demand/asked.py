@@ -25,5 +25,5 @@ class DemandAsked(WithTable):
 
     site: SiteLike = option("Fields of a site file, or the file.", SITE, where="input", default=...)
     damping: float = option("Damping ratio of the spectrum.", BELOW_ONE, default=0.05)
-    out: Path | None = table_file("Write the spectra over all periods (.csv or .parquet).", ".csv", ".parquet")
+    out: Path | None = table_file("Write the spectra over all periods", ".parquet")
     plot: Path | None = plot_file("Plot the spectra of acceleration and displacement")

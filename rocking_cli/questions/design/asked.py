@@ -108,9 +108,7 @@ class DesignAsked(OfStructure, Sought, MaybeUnderMotions, Around, OfJoints, With
         "template.",
         SITE,
     )  # fmt: skip
-    out: Path | None = table_file(
-        "Write the scanned values and the metric at each (.csv or .parquet).", ".csv", ".parquet"
-    )
+    out: Path | None = table_file("Write the scanned values and the metric at each", ".parquet")
     plot: Path | None = plot_file("Plot the metric against the field")
     idle = (
         Idle(

@@ -24,4 +24,4 @@ class EquivAsked(OfStructures, WithTable):
     Source: DeJong and Dimitrakopoulos (2014), Eqs. 9-20.
     """
 
-    out: Path | None = table_file("Write the parameters, a row for each direction of each structure.")
+    out: Path | None = table_file("Write the parameters, a row for each direction of each structure")

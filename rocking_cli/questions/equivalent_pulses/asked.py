@@ -69,6 +69,6 @@ class EquivalentPulsesAsked(SizedPulse, OfJoints, WithTable):
         "Coefficient of restitution: a number for all structures, that of the first, or each structure's own.",
         Kind(_restitution, "NUMBER|first|own", words="first own"), default="first",
     )  # fmt: skip
-    out: Path | None = table_file("Write the responses against p t.")
+    out: Path | None = table_file("Write the responses against p t")
     plot: Path | None = plot_file("Plot the responses")
     idle = (Idle("beside {pulse}", lambda asked: asked.pulse is not None, ("ag", "period", "shape")),)

@@ -27,6 +27,6 @@ class ResultsAsked(OfCurves):
         "The store, which may be that of a study that is still running.",
         FILE, where="input", default=..., typed="STORE",
     )  # fmt: skip
-    out: Path | None = table_file("Write all runs (.csv or .parquet).", ".csv", ".parquet")
-    curves: Path | None = table_file("Write the curves, one line per intensity (.csv or .parquet).", ".csv", ".parquet")
+    out: Path | None = table_file("Write all runs", ".parquet")
+    curves: Path | None = table_file("Write the curves, one line per intensity", ".parquet")
     pelicun: Path | None = option("Write the lognormal curves for pelicun, as fragility.csv in this folder.", FOLDER)

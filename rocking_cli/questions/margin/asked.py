@@ -42,7 +42,7 @@ class MarginAsked(OfStructure, UnderMotions, OfRestitution, ByEngine, OfJoints, 
     """
 
     polarity: Polarity = polarity("both")
-    out: Path | None = table_file("Write the shares.")
+    out: Path | None = table_file("Write the shares")
     plot: Path | None = plot_file("Plot the shares against the scale factor")
     idle = (
         Idle(

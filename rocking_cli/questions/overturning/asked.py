@@ -92,7 +92,7 @@ class OverturningAsked(OfPulses, OnAxes, ByEngine, WithTable):
         "Number of points along each side of a map, or of periods to compare.", WHOLE, ge=2, le=MAX_POINTS,
         usual="256; 60 to compare; 12 with free blocks",
     )  # fmt: skip
-    out: Path | None = table_file("Write the map, one point per line, or the curves.")
+    out: Path | None = table_file("Write the map, one point per line, or the curves")
     plot: Path | None = plot_file("Plot the map, or the curves")
     idle = (
         Idle("with {compare}, as free blocks take too long", lambda asked: asked.compare, ("engine",)),

@@ -172,7 +172,7 @@ class RespondAsked(
         on_terminal=_near,
         usual=f"{NEIGHBOURS_ON_TERMINAL} on the terminal, 0 in Python and with free blocks",
     )
-    out: Path | None = table_file("Write the time histories (.csv or .parquet).", ".csv", ".parquet")
+    out: Path | None = table_file("Write the time histories", ".parquet")
     plot: Path | None = plot_file("Plot the time histories")
     animate: Path | None = option(
         "Animate one degree of freedom, with free blocks beside it if they simulate the motion: .gif, .mp4 (requires "
@@ -285,7 +285,7 @@ class RespondEachAsked(Reading, OfModels, OfJoints, WithTable):
     )
     histories: bool = option("Keep the rotations in time: `answer.rotation[model]` at `answer.time`.", default=False)
     jobs: int | None = option("Number of time histories at a time.", WHOLE, ge=1, usual="one for each processor")
-    out: Path | None = table_file("Write the rows of `to_frame`, with units in the headings.", ".csv", ".parquet")
+    out: Path | None = table_file("Write the rows of `to_frame`, with units in the headings", ".parquet")
 
     @model_validator(mode="after")
     def _one_scale(self) -> Self:

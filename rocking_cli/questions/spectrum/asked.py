@@ -80,6 +80,6 @@ class SpectrumAsked(UnderMotions, OfRestitution, OfJoints, WithTable):
         several(Kind(_fractile), "Q,Q"), default=(0.16, 0.84),
     )  # fmt: skip
     jobs: int | None = option("Number of processor cores to use.", WHOLE, ge=1, le=1024, usual="all")
-    out: Path | None = table_file("Write the curves, including those of each motion.")
+    out: Path | None = table_file("Write the curves, including those of each motion")
     plot: Path | None = plot_file("Plot the curves")
     idle = (Idle("on linear blocks, which have no joints", lambda asked: asked.model != "nonlinear", ("opening",)),)

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, Self
-
-from pydantic import model_validator
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from rocking_cli.ask.asked import Idle, option
 from rocking_cli.ask.groups import (
@@ -23,7 +21,6 @@ from rocking_cli.ask.groups import (
     table_file,
 )
 from rocking_cli.ask.kinds import FOLDER, SITE, WHOLE, output
-from rocking_cli.errors import InputError, named
 from rocking_cli.names import MAX_NEIGHBOURS
 
 if TYPE_CHECKING:
@@ -39,13 +36,14 @@ class SurveyAsked(MaybeUnderMotions, OfJoints, Around, InLanguage, Identity, Wit
     The columns of the table are `mechanism`, `name` and fields of mechanisms, with dots for nested fields
     (loads.0.mass, ties.bar.stiffness); each row may have any mechanism. A column `file` names YAML files, whose fields
     the other columns replace. An empty cell means that the field is not given; give units in cells (800 mm) or in
-    headings (width [mm]). TABLE.csv may be - for standard input.
+    headings (width [mm]). Italian headings are read too. TABLE.csv may be - for standard input.
 
     Without ground motions, structures are ranked by their uplift acceleration. With ground motions, they are ranked by
     the share of neighbouring motions that overturn them and then by their largest peak rotation, both from the
     nonlinear model; a motion whose outcome is unknown, because a joint opens or slides that the model keeps closed,
     counts as overturning. Motions act as given, unless both polarities are requested, of which the worse governs. At a
-    site, each is verified by its code and ranked by its ratio of capacity to demand.
+    site, each is verified by its code and ranked by its ratio of capacity to demand; columns site, z and floor give a
+    row another site file, and the height or the fields of its floor.
 
     A block that is alone, and less deep than wide, is ranked as it rocks about its depth, unless its column plane says
     width. Without a depth, only its width is examined.
@@ -58,14 +56,15 @@ class SurveyAsked(MaybeUnderMotions, OfJoints, Around, InLanguage, Identity, Wit
       rocking survey parapets.csv --record "records/*.AT2" --polarity both --out ranked.csv
     """
 
+    writes_each: ClassVar[bool] = True  # the table before the sheets, which take longer and may fail
     structures: str | Path | Mapping[str, Sequence[Any]] | StructureTable | Sequence[StructureLike] = option(
-        "A table of structures as a CSV file, or its columns by their headings (a frame of pandas is one); or "
-        "structures, or their YAML files.",
+        "A table of structures as CSV, .xlsx, .xls or .ods, or its columns by their headings (a frame of pandas is "
+        "one); or structures, or their YAML files.",
         where="input", default=..., typed="TABLE.csv",
     )  # fmt: skip
     site: SiteLike | None = option(
         "Site file, or its fields in Python: each structure is verified by its code and ranked by the ratio of "
-        "capacity to demand. `rocking new site` prints a template.",
+        "capacity to demand. A column site replaces it for a row. `rocking new site` prints a template.",
         SITE,
     )
     neighbours: int | None = option(
@@ -79,7 +78,7 @@ class SurveyAsked(MaybeUnderMotions, OfJoints, Around, InLanguage, Identity, Wit
         '`if __name__ == "__main__"`.',
         default=False, where="Python", on_terminal=True,  # a command is always such a script
     )  # fmt: skip
-    out: Path | None = table_file("Write all rows in ranked order (.csv or .parquet).", ".csv", ".parquet")
+    out: Path | None = table_file("Write all rows in ranked order", ".parquet")
     page: Path | None = option(
         "Write an HTML page with a plot, a map and all rows in a sortable table.", output(".html")
     )
@@ -101,10 +100,3 @@ class SurveyAsked(MaybeUnderMotions, OfJoints, Around, InLanguage, Identity, Wit
         Idle("without ground motions", lambda asked: not asked.ground_motions, ("polarity", "opening", *NEIGHBOURS)),
         Idle("without neighbours", lambda asked: asked.neighbours == 0, DEVIATIONS),
     )  # fmt: skip
-
-    @model_validator(mode="after")
-    def _sheets_of_a_site(self) -> Self:
-        """Refuse sheets without a site."""
-        if self.sheets is not None and self.site is None:
-            raise InputError(f"{named('sheets')} requires a site to verify at: give {named('site')}")
-        return self

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from hashlib import sha256
 from pathlib import Path
@@ -12,7 +12,7 @@ from unicodedata import normalize
 
 from markupsafe import Markup, escape
 
-from rocking_cli.ask.inputs import yaml_of
+from rocking_cli.ask.inputs import SiteLike, yaml_of
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.documents.figures import dark_figures, inline_svg, template
 from rocking_cli.errors import InputError, Problem, Refused, RockingError
@@ -141,15 +141,15 @@ class SheetFolder:
         The folder, created if missing.
     asked : SurveyAsked
         The survey: its site as it was given, format and heading of the sheets.
-    site : SiteFile
-        The site.
+    site : SiteFile or None
+        The site of structures that have no other.
     language : str
         Language of the sheets.
     """
 
     path: Path
     asked: SurveyAsked
-    site: SiteFile
+    site: SiteFile | None
     language: str
 
     @property
@@ -157,10 +157,14 @@ class SheetFolder:
         """Suffix of the sheets."""
         return f".{self.asked.sheet_format}"
 
-    def check(self) -> None:
-        """Raise `InputError`, before any work, if sheets cannot be written, or the folder has files of others."""
+    def check(self, first: SiteFile | None) -> None:
+        """Raise `InputError`, before any work, if sheets cannot be written, or the folder has files of others.
+
+        `first` is the first site of the survey; None if none can be used.
+        """
         place = folder(str(self.path))
-        sheets.check(place / f"structure{self.suffix}", self.site, self.language)
+        if first is not None:
+            sheets.check(place / f"structure{self.suffix}", first, self.language)
         check_writable(place / LIST_FILE)
         discard(place)
         known = self._listed()
@@ -208,15 +212,21 @@ class SheetFolder:
         watch.note(f"wrote {what} and {LIST_FILE} to {self.path.resolve()}")
 
     def _sheet(self, found: Survey, entry: SurveyEntry) -> bytes:
-        assert self.asked.site is not None
-        site, made = of_each(self.site), entry.make()
+        site, made = entry.site(self.site), entry.make()
+        assert site is not None
+        given: SiteLike = site.document.data if site.changed else site.document.file
+        if self.asked.site is not None and site is self.site:
+            given = self.asked.site
         structure = Structure(made.weaker_side() or made)
-        verification = verify(structure, site)
         source = f"{Path(found.sheet.file).name}, line {entry.line}" if found.sheet is not None else structure.name
+        if site.changed:  # as a file it has the fields of both
+            site = replace(site, document=replace(site.document, file=f"{site.document.file} + {source}"))
+        site = of_each(site)
+        verification = verify(structure, site)
         call = self.asked.origin or "rocking_cli.survey(...)"
         origin = sheets.SheetOrigin(call, File(source, yaml_of(structure.mechanism).encode()))
         title = self.asked.title(call, self.language)
-        content = sheets.sheet_for(verification, site, self.asked.site, [], self.language, title, origin)
+        content = sheets.sheet_for(verification, site, given, [], self.language, title, origin)
         return sheets.rendered(content, self.suffix)
 
     def _listed(self) -> set[str]:

@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from copy import deepcopy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from functools import cache, partial
 from math import nan
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 import yaml
+from pydantic import BaseModel
 
 from rocking_cli.arrays import Reals
 from rocking_cli.ask.inputs import sheet_of
@@ -21,16 +23,22 @@ from rocking_cli.core import Mechanism
 from rocking_cli.core.registry import Registry
 from rocking_cli.core.structure_file import TEMPLATE_HINT, of_document
 from rocking_cli.errors import InputError, MechanismError, Problem, named
-from rocking_cli.io.field_problems import by_meaning, fields_at, lists_models, types_at
+from rocking_cli.io.field_problems import MEANINGS, by_meaning, fields_at, is_plural, lists_models, types_at
 from rocking_cli.io.spreadsheet import DECIMAL_COMMA, NUMBER, THOUSANDS, Row, Spreadsheet, unit_in
+from rocking_cli.io.starters import italian
 from rocking_cli.io.yaml_file import Document, Place, closed, parse, put, read_text, replace_at, spell, words
 from rocking_cli.text import cut, did_you_mean, one_line
+from rocking_cli.units import UnitError, number_of
+from rocking_cli.verification.check import read_site, site_in
+from rocking_cli.verification.code import SiteFile
 
 if TYPE_CHECKING:
     from rocking_cli.questions.survey.study import Survey
 
-
-FILE_COLUMN, MECHANISM_COLUMN = "file", "mechanism"
+T = TypeVar("T")
+FILE_COLUMN, MECHANISM_COLUMN, SITE_COLUMN, FLOOR = "file", "mechanism", "site", "floor"
+GROUND = "ground"
+"""Cell of a column `floor` for a structure that stands on no floor."""
 YAML_SUFFIXES = (".yaml", ".yml")
 COMMENT_SIGN = "#"
 """First character of the headings of columns that are not read."""
@@ -59,6 +67,20 @@ class FieldColumn:
     path: tuple[str, ...]
     unit: str = ""
 
+    @property
+    def english(self) -> tuple[str, ...]:
+        """The field, of which an Italian first word is in English, and `z` that of the floor."""
+        path = (italian()["fields"].get(self.path[0].lower(), self.path[0]), *self.path[1:])
+        return (FLOOR, "z") if path == ("z",) else path
+
+    def of(self, cls: type[BaseModel] | None) -> tuple[str, ...]:
+        """Return the field of a mechanism or site: `spessore` is the thickness of a wall, and the width of a block."""
+        first, *others = self.english
+        if first == "thickness" != self.path[0] and cls is not None and first not in cls.model_fields:
+            meant = (each for each in MEANINGS[first] if each in cls.model_fields and not is_plural(cls, (each,)))
+            first = next(meant, first)
+        return (first, *others)
+
 
 @dataclass
 class _RowDocument(Document):
@@ -68,6 +90,11 @@ class _RowDocument(Document):
     base: str = ""
     separator: str = ","
     columns: dict[Place, str] = field(default_factory=dict)
+
+    @property
+    def mark(self) -> yaml.Mark:
+        """Mark of all its values."""
+        return yaml.Mark(self.file, 0, self.line - 1, 0, None, 0)
 
     def problem(
         self, message: str, mark: yaml.Mark | None, name: str | None = None, hint: str | None = None
@@ -116,10 +143,14 @@ class StructureTable(Sequence["TableRow"]):
     def __init__(self, sheet: Spreadsheet, folder: Path) -> None:
         self.sheet, self.folder = sheet, folder
         self.registry = _Kept()
-        self._bases: dict[str, dict[str, Any] | InputError] = {}
+        self._kept: dict[str, Any] = {}
         self.columns = self._columns()
-        # Where the cells of columns with one word as heading are, such as the name.
-        self._places = {column.path[0]: column.place for column in self.columns if len(column.path) == 1}
+        # Columns with one word as heading, such as the name.
+        self.by_word = {column.english[0]: column for column in self.columns if len(column.english) == 1}
+        self.fields = [each for each in self.columns if each.english[0] not in (MECHANISM_COLUMN, SITE_COLUMN, FLOOR)]
+        self.of_floor = [each for each in self.columns if each.english[0] == FLOOR]
+        self.of_floor.sort(key=lambda each: each.english)  # `floor` itself first, which the others change
+        self.sites = [*dict.fromkeys(file for row in sheet.rows if (file := self.text(row, SITE_COLUMN)))]
         self._check_fields()
 
     @classmethod
@@ -138,27 +169,31 @@ class StructureTable(Sequence["TableRow"]):
 
     def text(self, row: Row, name: str) -> str:
         """Return the text of a row's cell, by the heading of its column; empty without such a column."""
-        return row.cells[self._places[name]] if name in self._places else ""
+        return row.cells[self.by_word[name].place] if name in self.by_word else ""
 
     def base_of(self, row: Row) -> str:
         """Return the YAML file that a row modifies; empty for none. Other files are fields of mechanisms."""
         file = self.text(row, FILE_COLUMN)
         return file if file.lower().endswith(YAML_SUFFIXES) else ""
 
-    def base(self, file: str) -> dict[str, Any]:
-        """Return the data of a YAML file, read once. Raises `InputError` if it cannot be read."""
-        if file not in self._bases:
-            path = self.folder / file
+    def first_site(self) -> SiteFile | None:
+        """Return the first site that a row names and that can be used; None if there is none."""
+        for file in self.sites:
+            with suppress(InputError):
+                return self.kept(file, read_site)
+        return None
+
+    def kept(self, file: str, read: Callable[[Path], T]) -> T:
+        """Return what a file of the table holds, read once. Raises `InputError` if it cannot be read."""
+        if file not in self._kept:
             try:
-                document = parse(read_text(path, "structure"), str(path), "structure", TEMPLATE_HINT)
-                document.check()
-                self._bases[file] = document.data
+                self._kept[file] = read(self.folder / file)
             except InputError as error:
-                self._bases[file] = error
-        base = self._bases[file]
-        if isinstance(base, InputError):
-            raise base
-        return base
+                self._kept[file] = error
+        held = self._kept[file]
+        if isinstance(held, InputError):
+            raise held
+        return held  # type: ignore[no-any-return]
 
     def _columns(self) -> list[FieldColumn]:
         columns, problems, used = [], [], dict[tuple[str, ...], str]()
@@ -173,11 +208,12 @@ class StructureTable(Sequence["TableRow"]):
             except InputError as error:
                 problems += [Problem(one.message, sheet.file, sheet.line, hint=one.hint) for one in error.problems]
                 continue
-            if path in used:
-                message = f"is the same field as {cut(one_line(used[path]))}"
+            column = FieldColumn(place, shown, path, unit)
+            if column.english in used:
+                message = f"is the same field as {cut(one_line(used[column.english]))}"
                 problems.append(Problem(message, sheet.file, sheet.line, field=shown, hint="take one of them away"))
-            used[path] = heading
-            columns.append(FieldColumn(place, shown, path, unit))
+            used[column.english] = heading
+            columns.append(column)
         if problems:
             raise InputError(*problems)
         if not columns:
@@ -192,17 +228,17 @@ class StructureTable(Sequence["TableRow"]):
                 classes.append(self.registry[name])
             except (InputError, MechanismError):  # the error is reported for each row of this file
                 continue
-        if not {MECHANISM_COLUMN, FILE_COLUMN} & {column.path[0] for column in self.columns}:
+        if not {MECHANISM_COLUMN, FILE_COLUMN} & {column.english[0] for column in self.columns}:
             matches = get_close_matches(MECHANISM_COLUMN, [column.path[0].lower() for column in self.columns], n=1)
             similar = [column.heading for column in self.columns if matches and column.path[0].lower() == matches[0]]
             hint = f"write {MECHANISM_COLUMN} instead of {similar[0]}" if similar else ""
-            hint = hint or "add one that names the mechanism of each row"
+            hint = hint or "add one that names the mechanism of each row, or take rows above the headings away"
             what = f"the table has neither a column {MECHANISM_COLUMN} nor a column {FILE_COLUMN}"
             raise InputError(Problem(what, self.sheet.file, self.sheet.line, hint=hint))
-        known = {MECHANISM_COLUMN, FILE_COLUMN}.union(*(fields_at(cls, ()) for cls in classes))
+        known = {MECHANISM_COLUMN, FILE_COLUMN, SITE_COLUMN, FLOOR}.union(*(fields_at(cls, ()) for cls in classes))
         problems = []
         for column in self.columns:
-            if classes and column.path[0] not in known:
+            if classes and known.isdisjoint(column.of(cls)[0] for cls in classes):
                 fields = {name: info for cls in classes for name, info in fields_at(cls, ()).items()}
                 guess = did_you_mean(column.path[0], sorted(known))
                 guess = guess if guess and guess.endswith("?") else ""
@@ -220,7 +256,7 @@ class StructureTable(Sequence["TableRow"]):
         mechanisms = {self.text(row, MECHANISM_COLUMN) for row in self.sheet.rows}
         for file in {self.base_of(row) for row in self.sheet.rows if not self.text(row, MECHANISM_COLUMN)} - {""}:
             try:
-                mechanisms.add(str(self.base(file).get(MECHANISM_COLUMN)))
+                mechanisms.add(str(self.kept(file, _data_in).get(MECHANISM_COLUMN)))
             except InputError:  # the error is reported for each row of this file
                 continue
         return mechanisms - {""}
@@ -269,18 +305,18 @@ class TableRow:
         table, row = self.table, self.row
         document = _RowDocument("structure", table.sheet.file, [], line=row.line, base=table.base_of(row))
         document.separator = table.sheet.separator
-        mark = yaml.Mark(document.file, 0, row.line - 1, 0, None, 0)
-        document.values[()] = document.values[(MECHANISM_COLUMN,)] = mark
+        document.values[()] = document.values[(MECHANISM_COLUMN,)] = document.mark
         if row.too_many is not None:
             what = f"has more cells than headings; the first extra cell is {cut(one_line(row.too_many))!r}"
             raise InputError(document.problem(what, None, hint="is a separator in a cell without quotes?"))
         based = table.base_of(row)
         folder, default = table.folder, self.name
         if based:
-            document.data = deepcopy(self._base(based, document))
+            document.data = deepcopy(self._read(based, _data_in, document, FILE_COLUMN))
             folder = (table.folder / based).parent
             default = one_line(Path(based).stem) or default
-        self._fill(document, based)
+        cls = self._class_in(document)
+        self._fill(document, [each for each in table.fields if not based or each.english != (FILE_COLUMN,)], cls)
         if MECHANISM_COLUMN not in document.data and not based and (file := table.text(row, FILE_COLUMN)):
             what = f"{cut(one_line(file))!r} is not a structure file: its name must end in .yaml or .yml"
             document.problems.append(document.problem(what, None, FILE_COLUMN, "or give the mechanism of the row"))
@@ -288,43 +324,98 @@ class TableRow:
         document.data = closed(document.data)
         return of_document(document, default, folder, table.registry)
 
-    def _base(self, file: str, document: _RowDocument) -> dict[str, Any]:
+    @property
+    def of_floor(self) -> list[FieldColumn]:
+        """Columns of the floor in which the row has a cell."""
+        return [column for column in self.table.of_floor if self.row.cells[column.place]]
+
+    def site(self, usual: SiteFile | None) -> SiteFile:
+        """Return the site of the row, on its floor; `usual` is that of rows that name none.
+
+        Raises
+        ------
+        InputError
+            If there is no site, or its file or a cell of the floor is wrong: the table, its line and the heading.
+        """
+        table = self.table
+        document = _RowDocument("site", table.sheet.file, [], line=self.line, separator=table.sheet.separator)
+        file = table.text(self.row, SITE_COLUMN)
+        site = self._read(file, read_site, document, SITE_COLUMN) if file else usual
+        if site is None:
+            hint = f"fill it in, or give {named('site')} for the rows without one"
+            raise InputError(document.problem("is empty", None, table.by_word[SITE_COLUMN].heading, hint))
+        if not self.of_floor:
+            return site
+        document.base, document.data = Path(site.document.file).name, deepcopy(site.document.data)
+        self._fill(document, self.of_floor, type(site.site))
+        document.check()
+        floor, heading = document.data[FLOOR], self.of_floor[0].heading
+        if isinstance(floor, dict):
+            floor = {**(site.document.data.get(FLOOR) or {}), **floor}
+            with suppress(UnitError):  # reported with the other fields
+                floor = GROUND if number_of(floor.get("z"), "m") == 0 else floor
+            document.values = {(FLOOR, name): document.mark for name in floor}
+        elif floor != GROUND:
+            what = f"must be {GROUND} or fields such as {{z: 6 m}}, got {cut(repr(floor))}"
+            raise InputError(document.problem(what, None, heading, "or give the height in a column z"))
+        document.data[FLOOR] = None if floor == GROUND else floor
+        fields = fields_at(type(site.site), (FLOOR,)).items()
+        lacks = [name for name, info in fields if info.is_required() and floor != GROUND and name not in floor]
+        if lacks:
+            what = f"needs the building, of which {document.base} lacks {', '.join(lacks)}"
+            hint = f"add `{FLOOR}: {{{', '.join(f'{name}: ...' for name in lacks)}}}` to it"
+            raise InputError(document.problem(what, None, heading, hint))
+        on_floor = site_in(document, Path(site.document.file).parent)
+        return replace(on_floor, document=replace(site.document, data=document.data), changed=True)
+
+    def _read(self, file: str, read: Callable[[Path], T], document: _RowDocument, column: str) -> T:
         try:
-            return self.table.base(file)
+            return self.table.kept(file, read)
         except InputError as error:
             first = error.problems[0]
             line = f"{first.line}: " if first.line is not None else ""
-            message = f"{cut(one_line(file))}: {line}{first.message}"
-            raise InputError(document.problem(message, None, FILE_COLUMN, first.hint)) from None
+            message = f"{cut(one_line(file))}: {line}{Problem(first.message, field=first.field)}"
+            raise InputError(document.problem(message, None, self.table.by_word[column].heading, first.hint)) from None
 
-    def _fill(self, document: _RowDocument, based: str) -> None:
+    def _class_in(self, document: _RowDocument) -> type[Mechanism] | None:
+        """Return the mechanism of the row, also to its document; None if it is unknown, which is reported later."""
+        if mechanism := self.table.text(self.row, MECHANISM_COLUMN):
+            document.data[MECHANISM_COLUMN] = mechanism
+        return self.table.registry.get(str(document.data.get(MECHANISM_COLUMN)))
+
+    def _fill(self, document: _RowDocument, columns: Sequence[FieldColumn], cls: type[BaseModel] | None) -> None:
         """Write the non-empty cells to the fields of a document; add problems for those that cannot be written."""
-        table, data = self.table, document.data
-        if mechanism := table.text(self.row, MECHANISM_COLUMN):
-            data[MECHANISM_COLUMN] = mechanism
-        name = str(data.get(MECHANISM_COLUMN))
-        cls = table.registry.get(name)  # None for an unknown mechanism, which is reported when it is built
-        for column in table.columns:
+        for column in columns:
             text = self.row.cells[column.place]
-            if not text or column.path == (MECHANISM_COLUMN,) or (based and column.path == (FILE_COLUMN,)):
+            if not text:
                 continue
             try:
-                place = put(data, column.path, None, is_list=partial(_is_list, cls))
-                value = _value(text, column, _types(cls, place), decimal_comma=table.sheet.decimal_comma)
-                replace_at(data, place, value)
+                place = put(document.data, column.of(cls), None, is_list=partial(_is_list, cls))
+                if place in document.columns:
+                    hint = "leave one of the two cells empty"
+                    raise InputError(Problem(f"is the same field as {document.columns[place]}", hint=hint))
+                value = _value(text, column, _types(cls, place), decimal_comma=self.table.sheet.decimal_comma)
+                replace_at(document.data, place, value)
                 document.columns[place] = column.heading
             except InputError as error:
                 problems = error.problems
                 document.problems += [document.problem(one.message, None, column.heading, one.hint) for one in problems]
 
 
+def _data_in(path: Path) -> dict[str, Any]:
+    """Return the data of the YAML file of a structure. Raises `InputError` if it cannot be read."""
+    document = parse(read_text(path, "structure"), str(path), "structure", TEMPLATE_HINT)
+    document.check()
+    return document.data
+
+
 @cache
-def _is_list(cls: type[Mechanism] | None, place: Place) -> bool:
+def _is_list(cls: type[BaseModel] | None, place: Place) -> bool:
     return cls is not None and lists_models(cls, place)
 
 
 @cache
-def _types(cls: type[Mechanism] | None, place: Place) -> frozenset[Any]:
+def _types(cls: type[BaseModel] | None, place: Place) -> frozenset[Any]:
     return frozenset(types_at(cls, place)) if cls is not None else frozenset()
 
 
@@ -395,7 +486,7 @@ def coordinate(heading: str) -> str | None:
     ('longitude', 'latitude', None)
     """
     name, unit = unit_in(heading.lstrip("#").strip().lower(), ())
-    return COORDINATES.get(name) if unit in DEGREES else None
+    return COORDINATES.get(italian()["fields"].get(name, name)) if unit in DEGREES else None
 
 
 @dataclass(frozen=True)

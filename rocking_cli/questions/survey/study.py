@@ -28,7 +28,7 @@ from rocking_cli.structure import Structure, check_opening
 from rocking_cli.studies.conclusion import Concluded, Conclusion, NeighbourShare
 from rocking_cli.studies.neighbours import Conditions, Neighbourhood, neighbours
 from rocking_cli.verification.check import code_of, of_each, questioned, row_numbers, verify
-from rocking_cli.verification.code import SiteFile
+from rocking_cli.verification.code import SiteFile, codes
 
 STRUCTURES_PER_CHUNK = 8  # in the memory of a thread at a time: the tables of each are one megabyte, at most ten
 
@@ -50,6 +50,9 @@ class SurveyEntry(Protocol):
 
     def make(self) -> Mechanism:
         """Build the structure. Raises `InputError` or `MechanismError` if it cannot be used."""
+
+    def site(self, usual: SiteFile | None) -> SiteFile | None:
+        """Return its site, `usual` unless it has another. Raises `InputError` if that cannot be used."""
 
 
 @dataclass(frozen=True)
@@ -147,6 +150,12 @@ class Surveyed:
         Whether it may rock about its depth, which is not given.
     any_friction : bool
         Whether it is a single body without a given friction, which never slides.
+    site : str, optional
+        File of its site; None without one.
+    code : str, optional
+        Code of its site.
+    z : float, optional
+        Height of its base above the foundation [m], 0 on the ground; None if its code has no floors.
     """
 
     row: int
@@ -173,6 +182,9 @@ class Surveyed:
     side: str | None = None
     width_alone: bool = False
     any_friction: bool = False
+    site: str | None = None
+    code: str | None = None
+    z: float | None = None
 
     @property
     def caution(self) -> str | None:
@@ -307,7 +319,7 @@ def survey(
     polarities : sequence of int
         The polarities, 1, -1 or both; of both, the worse governs.
     site : SiteFile, optional
-        The site: each structure is verified by its code.
+        The site of structures that have no other: each is verified by the code of its site.
     around : Neighbourhood
         The neighbours of each motion; a count of 0 for none.
     bounded : bool
@@ -334,11 +346,11 @@ def survey(
     """
     check_opening(opening)
     results: list[Surveyed | FailedEntry | None] = [None] * len(entries)
-    site = of_each(site) if site is not None else None
+    by_code = site is not None or bool(getattr(entries, "sites", ()))
     samples = len(entries) * len(polarities) * sum(motion.npts for motion in motions)
     if reduced := bounded and samples * around.count > MAX_SAMPLES:
         around = replace(around, count=MAX_SAMPLES // samples)
-    part = partial(_part, entries, Setting(motions, polarities, around, site, opening, cautions))
+    part = partial(_part, entries, Setting(motions, polarities, around, by_code, site, opening, cautions))
 
     def work(first: int, stop: int) -> None:
         results[first:stop] = part(first, stop)
@@ -350,22 +362,23 @@ def survey(
             results[first : first + len(done)] = done
             if progress is not None:
                 progress(len(done))
-    by = "ratio" if site is not None else "response" if motions else "lambda"
+    by = "ratio" if by_code else "response" if motions else "lambda"
     good = sorted((result for result in results if isinstance(result, Surveyed)), key=ORDERS[by])
     bad, names = [each for each in results if isinstance(each, FailedEntry)], [each.name for each in motions]
-    numbers = code_of(site).row_numbers if site is not None else {}
-    units = {name: number.unit for name, number in numbers.items()}
+    used = dict.fromkeys(each.code for each in good if each.code is not None)
+    units = {name: number.unit for code in used for name, number in codes()[code].row_numbers.items()}
     peaks = [each.of_ground.pga_g for each in motions], [each.pga_g for each in motions if each.ground is not None]
     sheet = getattr(entries, "sheet", None)
     return Survey(good, bad, names, by, units, sheet, around, reduced, polarities, *peaks)
 
 
 class Setting(NamedTuple):
-    """What all structures have in common: ground motions, polarities, neighbours, site, `opening`, and `cautions`."""
+    """What structures have in common, such as whether codes verify them, and the site of those without another."""
 
     motions: Sequence[GroundMotion]
     polarities: Sequence[int]
     around: Neighbourhood
+    by_code: bool
     site: SiteFile | None
     opening: float
     cautions: Callable[[Mechanism], Sequence[str]]
@@ -384,9 +397,10 @@ def _part(
             made = entry.make()
             weaker = made.weaker_side()
             ready[k] = Structure(weaker or made, opening=setting.opening)
-            asked = questioned(Structure(made), setting.site) if setting.site is not None else []
+            site = entry.site(setting.site) if setting.by_code else None
+            asked = questioned(Structure(made), site) if site is not None else []
             odd = [*doubts(made), *(f"{each.name} {each.words}" for each in asked)]
-            alone = replace(_alone(place, entry, ready[k], setting), doubt="; ".join(odd) or None)
+            alone = replace(_alone(place, entry, ready[k], setting, site), doubt="; ".join(odd) or None)
             rows[k] = replace(
                 alone, side="depth" if weaker is not None else None, remarks=made.remarks,
                 width_alone=made.depth is None and made.may_rock_about_depth(),
@@ -418,14 +432,17 @@ def _part(
     return rows
 
 
-def _alone(place: int, entry: SurveyEntry, structure: Structure, setting: Setting) -> Surveyed:
+def _alone(
+    place: int, entry: SurveyEntry, structure: Structure, setting: Setting, site: SiteFile | None
+) -> Surveyed:  # fmt: skip
     """Return the results of a structure without ground motions."""
-    mechanism, sides, site = structure.mechanism, structure.statics, setting.site
+    mechanism, sides = structure.mechanism, structure.statics
+    floor = getattr(site.site, "floor", None) if site is not None else None
     k = int(sides[1].lambda_ < sides[0].lambda_ * (1 - 1e-9))
     direction, side = mechanism.sides[k], sides[k]
     why = structure.why_no_block
     block = structure.equivalence[direction] if why is None else None
-    verification = verify(structure, site) if site is not None else None
+    verification = verify(structure, of_each(site)) if site is not None else None
     return Surveyed(
         place + 1,
         entry.line,
@@ -446,6 +463,9 @@ def _alone(place: int, entry: SurveyEntry, structure: Structure, setting: Settin
         verified=verification.conclusion if verification is not None else None,
         unprinted=verification is not None and verification.unprinted,
         numbers=row_numbers(verification, code_of(site)) if verification is not None and site is not None else {},
+        site=site.document.file if site is not None else None,
+        code=site.site.code if site is not None else None,
+        z=floor.z if floor is not None else 0.0 if hasattr(site and site.site, "floor") else None,
     )
 
 
@@ -536,3 +556,7 @@ class MadeStructure:
     def make(self) -> Mechanism:
         """Return the structure."""
         return self.mechanism
+
+    def site(self, usual: SiteFile | None) -> SiteFile | None:
+        """Return the site of all structures."""
+        return usual

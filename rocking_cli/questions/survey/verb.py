@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any
 
 from rocking_cli.ask.answer import Answer, drawn
 from rocking_cli.ask.inputs import language_of, site_of, structure_of
-from rocking_cli.ask.verbs import verb
+from rocking_cli.ask.verbs import verb, write_files
 from rocking_cli.ask.watcher import Advance, Watcher
-from rocking_cli.errors import InputError, MechanismError, Problem, RockingError
+from rocking_cli.errors import InputError, MechanismError, Problem, RockingError, named
 from rocking_cli.questions.survey.asked import SurveyAsked
 from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.text import one_line
@@ -21,6 +21,7 @@ from rocking_cli.text import one_line
 if TYPE_CHECKING:
     from rocking_cli.questions.survey.study import Survey, SurveyEntry
     from rocking_cli.studies.provenance import TitleBlock
+    from rocking_cli.verification.code import SiteFile
     from rocking_cli.views.sheet.language import Language
 
 MIN_ROWS_FOR_PROCESSES, MIN_ROWS_FOR_PROCESSES_WITH_MOTION = 10_000, 1_000  # rows from which processes pay
@@ -54,28 +55,32 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
     >>> [row.name for row in rk.survey(table).rows]
     ['b', 'a']
     """
-    from rocking_cli.io.tables import PARQUET
+    from rocking_cli.io.tables import PARQUET, XLSX
     from rocking_cli.plotting.style import in_language
     from rocking_cli.questions.survey.study import survey as study
     from rocking_cli.questions.survey.view import blocks, columns, texts_in, title, view
     from rocking_cli.views.cautions import cautions_of
 
     where = None if asked.site is None else site_of(asked.site)
-    say = texts_in(language := language_of(asked.language, where, watch))
+    language_of(asked.language, where, watch)
     entries, requested = _entries(asked.structures, watch), asked.ground_motions
+    first, by_code = _first_site(entries, where), where is not None or bool(getattr(entries, "sites", ()))
+    say = texts_in(language := language_of(asked.language, first, watch))
+    if asked.sheets is not None and not by_code:
+        raise InputError(f"{named('sheets')} requires a site to verify at: give {named('site')}")
     shaken = [each.motion.scaled(each.factor) for each in requested.gather(0.0, watch)] if requested else []
     writer = None
-    if where is not None and asked.sheets is not None:
+    if asked.sheets is not None:
         from rocking_cli.questions.survey.pages import SheetFolder
 
         writer = SheetFolder(asked.sheets, asked, where, language)
-        writer.check()
+        writer.check(first)
     sheet = getattr(entries, "sheet", None)
     if asked.map is not None:
         from rocking_cli.questions.survey.structure_table import columns_of
 
         columns_of(sheet)
-    processes = _processes(len(entries), asked.jobs, shaken=bool(shaken) or where is not None)
+    processes = _processes(len(entries), asked.jobs, shaken=bool(shaken) or by_code)
     with watch.progress(len(entries), "structures") as advance:
         result = study(
             entries, shaken, asked.signs, site=where, around=asked.neighbourhood(Neighbourhood.count if shaken else 0),
@@ -88,6 +93,13 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
     if sheet is not None:  # weights of other structures were noted when they were opened
         remarks = list(dict.fromkeys(remark for each in result.rows for remark in each.remarks))
         _tell_first(watch.note, remarks, "further remarks on how fields were read: {:,}")
+    # Spreadsheets open a CSV file, with their decimal sign, or numbers; Parquet keeps the cells that came in.
+    suffix = asked.out.suffix.lower() if asked.out is not None else ""
+    decimal = {PARQUET: None, XLSX: ""}.get(suffix, asked.decimal or ".")
+    figure = in_language(say, drawn("questions.survey.picture.draw_survey", result, title(result)))
+    files = partial(blocks, result, decimal)
+    answer = Answer("survey", result, view(result, asked.top, say), partial(columns, result), figure, files)
+    write_files(answer, asked, watch)
     if asked.page is not None:
         source = "structures" if sheet is None else Path(sheet.file).name
         heading = asked.title(asked.origin or "rocking_cli.survey(...)", language)
@@ -99,11 +111,7 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
             writer.write(result, entries, watch)
         except RockingError as error:
             watch.unwritten(error)
-    # Spreadsheets open a CSV file, with their decimal sign; Parquet keeps the cells that came in.
-    decimal = None if asked.out is not None and asked.out.suffix.lower() == PARQUET else asked.decimal or "."
-    figure = in_language(say, drawn("questions.survey.picture.draw_survey", result, title(result)))
-    files = partial(blocks, result, decimal)
-    return Answer("survey", result, view(result, asked.top, say), partial(columns, result), figure, files)
+    return answer
 
 
 def _tell_bad(found: Survey, file: str, watch: Watcher) -> None:
@@ -131,10 +139,25 @@ def _entries(given: Any, watch: Watcher) -> Sequence[SurveyEntry]:
         raise InputError(Problem("the table has no rows below its headings", table.sheet.file))
     if table.sheet.encoding == "Windows-1252":
         watch.note(f"{table.sheet.file} is not in UTF-8: read as Windows-1252")
+    if others := table.sheet.unread:
+        watch.note(f"table: {table.sheet.file}; sheets not read: {', '.join(map(one_line, others))}")
     if short := [row.line for row in table.sheet.rows if row.short]:
         lines = f"line {short[0]}" if len(short) == 1 else f"{len(short):,} lines, first in line {short[0]}"
         watch.warn(f"{table.sheet.file}: fewer cells than headings in {lines}: missing cells are read as empty")
     return table
+
+
+def _first_site(entries: Sequence[SurveyEntry], where: SiteFile | None) -> SiteFile | None:
+    """Return the first site of a survey; None without one. Raises `InputError` if floors of rows lack a site."""
+    from rocking_cli.questions.survey.structure_table import StructureTable
+
+    if where is not None or not isinstance(entries, StructureTable):
+        return where
+    if entries.of_floor and not entries.sites:
+        hint = f"give {named('site')}, or a column site with a site file for each row"
+        sheet, heading = entries.sheet, entries.of_floor[0].heading
+        raise InputError(Problem("requires a site", sheet.file, sheet.line, field=heading, hint=hint))
+    return entries.first_site()
 
 
 def _processes(rows: int, jobs: int | None, *, shaken: bool) -> int | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import asdict, replace
@@ -28,6 +29,7 @@ MAX_NAME_LENGTH = 30  # characters, in the table
 MAX_CAUTIONED = 3  # structures whose cautions are printed
 SATURATED = 0.99  # share of neighbours from which ranks hardly differ
 PLAIN_FRICTION = 0.3  # coefficient of friction that many floors are taken to have
+CODE = re.compile(r"[-+]?(0\d|\d{16})")
 ROWS_PER_BLOCK = 10_000  # rows of a file that are written at once
 RANKED = {
     "lambda": "by ground acceleration at uplift",
@@ -103,6 +105,10 @@ OF_SITE: tuple[Column[RankedStructure], ...] = (
     Column("limit_state", _limit_state, head="governs", text=True, rank=2),
     Column("not_counted", _not_counted, head="not\ncounted", text=True),
 )
+OF_ROW_SITE: tuple[Column[RankedStructure], ...] = (
+    Column("site", of("found.site"), head="site", text=True, rank=1),
+    Column("z", of("found.z"), "m", "z [m]", rank=1),
+)
 OF_NEIGHBOURS: tuple[Column[RankedStructure], ...] = (
     only_shown("neighbours\noverturn", _share),
     Column("share_lowest", of("found.under.share.lowest")),
@@ -176,6 +182,7 @@ def _columns(found: Survey) -> list[Column[RankedStructure]]:
     return [
         *STRUCTURE,
         *(OF_SITE if found.by == "ratio" else ()),
+        *(each for each in OF_ROW_SITE if len({getattr(row, each.key or "") for row in found.rows}) > 1),
         *(_number(name, unit) for name, unit in found.units.items()),
         *(OF_NEIGHBOURS if found.around.count else ()),
         *(UNDER_MOTIONS if found.motions else ()),
@@ -191,7 +198,7 @@ def _number(name: str, unit: str) -> Column[RankedStructure]:
 def _kept(sheet: Spreadsheet | None, taken: Collection[str]) -> Iterator[Column[RankedStructure]]:
     """Yield the columns of the given table, without those that the survey has under the same name."""
     for place, heading in sheet.columns.items() if sheet is not None else ():
-        if heading not in ("name", "mechanism"):
+        if heading not in taken or heading not in ("name", "mechanism", "site"):
             name = f"given {heading}" if heading in taken else heading
             yield Column(None, partial(_cell, place), name=name, text=True)
 
@@ -214,7 +221,8 @@ def blocks(found: Survey, decimal: str | None) -> Iterator[Columns]:
 def columns(found: Survey, start: int = 0, stop: int | None = None, decimal: str | None = None) -> Columns:
     """Return some of the rows as columns of a table, followed by the unchanged columns of the given table.
 
-    With the decimal sign of a spreadsheet, numbers in cells that came in have this sign.
+    With the decimal sign of a spreadsheet, numbers in cells that came in have this sign; with an empty one they are
+    numbers.
     """
     rows = _ranked(found, start, stop)
     if not rows:
@@ -227,8 +235,14 @@ def columns(found: Survey, start: int = 0, stop: int | None = None, decimal: str
             frame[column.heading] = list(map(one_line, frame[column.heading]))
     if found.sheet is not None and decimal is not None:
         for cells in kept.values():
-            cells[:] = [_with_decimal(found.sheet, cell, decimal) for cell in cells]
+            cells[:] = [(_with_decimal if decimal else _as_number)(found.sheet, cell, decimal) for cell in cells]
     return frame | kept
+
+
+def _as_number(sheet: Spreadsheet, cell: str, _: str) -> float | str:
+    """Return a cell that came in, as a number if it is one; a code, such as 0071 or of many digits, is none."""
+    number = sheet.number(cell)
+    return cell if number is None or CODE.match(number) else float(number)
 
 
 def _with_decimal(sheet: Spreadsheet, cell: str, decimal: str) -> str:
@@ -356,6 +370,8 @@ def sentences(found: Survey, top: int | None = None, say: Language = ENGLISH) ->
     lines.append(Aside(f"Ranked {ranked}."))
     if found.pga:
         lines.append(" ".join(_of_peaks(found)))
+    if found.motions and any(row.z for row in rows):
+        lines.append("The motions are the same at every height z: the floors of a site only concern its code.")
     if found.motions:
         lines.append(Aside(
             "Time histories are by the nonlinear model. The peak is the largest rotation over the critical rotation "

@@ -77,7 +77,7 @@ def sources(
     if isinstance(site, str | Path):
         of_site = File(str(site), original(site))
     elif site is not None:
-        of_site = File("site", json_text(site).encode())
+        of_site = File(read.document.file if read is not None else "site", json_text(site).encode())
     records = {str(each.file or each.motion.name): file_of_motion(each) for each in motions}
     named = {} if read is None else {key: File(str(file), original(file)) for key, file in read.site.named.items()}
     return SheetSources(origin.structure, of_site, records, versions(mechanism), origin.strengthened, named)
