@@ -10,7 +10,7 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from math import inf, pi, sqrt
-from operator import itemgetter
+from operator import attrgetter, itemgetter
 
 from pydantic import ValidationError
 
@@ -66,7 +66,7 @@ class _Case:
         if spectrum is None:
             return ItalianMethod(title, None, None, clause)
         a_g = self.ground.capacity(spectrum, demand, capacity)
-        return ItalianMethod(title, a_g, spectrum.ag, clause, *self.ground.lasts(state, demand, capacity))
+        return ItalianMethod(title, a_g, spectrum.ag, clause, partial(self.ground.lasts, state, demand, capacity))
 
     def linear(self) -> ItalianMethod:
         """Return the capacity by the linear method: q times the a_g at which rocking starts at SLD [§C8.7.1.2.1.7]."""
@@ -74,8 +74,8 @@ class _Case:
         if shaking is None:
             return ItalianMethod(title, None, None, clauses.LINEAR)
         a_g = self.ground.site.q * self.ground.capacity(self.ground.of_activation, self.forces, self.curve.a0)
-        lasts = self.ground.lasts("SLV", lambda spectrum: spectrum.ag, a_g)
-        return ItalianMethod(title, a_g, shaking.ag, clauses.LINEAR, *lasts)
+        lasts = partial(self.ground.lasts, "SLV", attrgetter("ag"), a_g)
+        return ItalianMethod(title, a_g, shaking.ag, clauses.LINEAR, lasts)
 
     @property
     def of_damage(self) -> str:

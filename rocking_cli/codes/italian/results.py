@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property, partial
 from math import inf, isclose
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from rocking_cli.codes.italian.capacity import ExactCurve
 from rocking_cli.codes.italian.chain import Chain
@@ -58,15 +59,27 @@ class ItalianMethod(frame.Method):
 
     Parameters
     ----------
-    return_period : float or None
-        The capacity as a return period [years]; None if the hazard is not known.
-    beyond : bool
-        Whether the capacity is beyond the table of the hazard; the return period is then the end of the table.
+    in_years : callable
+        Returns the capacity as a return period [years], None if the hazard is not known, and whether it is beyond the
+        table of the hazard; the return period is then the end of the table.
     """
 
-    return_period: float | None = None
-    beyond: bool = False
+    in_years: Callable[[], tuple[float | None, bool]] = field(default=lambda: (None, False), repr=False, compare=False)
     unit: str = field(default="g", kw_only=True)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return what a pickle keeps: the return period is computed."""
+        return {**vars(self), "in_years": partial(tuple, self.in_years())}
+
+    @cached_property
+    def return_period(self) -> float | None:
+        """The capacity as a return period [years]; None if the hazard is not known."""
+        return self.in_years()[0]
+
+    @cached_property
+    def beyond(self) -> bool:
+        """Whether the capacity is beyond the table of the hazard."""
+        return self.in_years()[1]
 
     @property
     def a_g(self) -> float | None:

@@ -1,3 +1,3 @@
-"""`rocking building`: all out-of-plane mechanisms of a building described in one file, and the one that governs."""
+"""Verify all mechanisms of a building that one file describes."""
 
 PLACE = 425

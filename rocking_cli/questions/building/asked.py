@@ -60,7 +60,7 @@ class BuildingAsked(UnderSets, InLanguage, Identity, WithTable):
         SITE,
     )
     strengthened: str | Path | Mapping[str, Any] | None = option(
-        "The strengthened building, to be verified too and compared.", FILE
+        "The strengthened structure, to be verified too and compared with FILE.", FILE
     )
     worst: int = option("Number of mechanisms to verify by time histories.", WHOLE, default=3, ge=1, le=MAX_SHAKEN)
     design: int | None = option("Level whose ties are designed: the least bars that satisfy the code.", WHOLE, ge=1)
@@ -68,7 +68,7 @@ class BuildingAsked(UnderSets, InLanguage, Identity, WithTable):
         "Write each mechanism into this folder as a structure file, with its site, and a table of all.", FOLDER
     )
     sheet: Path | None = option(
-        "Write the sheet of the building (.html; .docx and .pdf need an extra package; a browser does for .pdf).",
+        "Write the calculation sheet (.html; .docx and .pdf need an extra package; a browser does for .pdf).",
         output(".html", ".docx", ".pdf"),
     )
     appendix: bool = option("Add the workings of each mechanism that counts to the sheet.", default=False)

@@ -148,7 +148,7 @@ class Bearing(Part):
     thrust: float = quantity("its outward thrust for a metre of wall", unit="N/m", default=0.0, ge=0, le=1e9)
 
 
-class Floor(Bearing):
+class BuildingFloor(Bearing):
     """A floor."""
 
     name: Name = Field(description="what to call it")
@@ -218,7 +218,7 @@ class BellGable(OnTop):
                 yield ("openings", k), f"ends {end:g} m above the foot of a gable {given['height']:g} m high"
 
 
-class Corner(Part):
+class WallCorner(Part):
     """A corner of two walls that interlock, which may turn outwards along its diagonal."""
 
     name: Name | None = Field(None, description="what to call it")
@@ -232,9 +232,7 @@ class Building(Part):
     meanings: ClassVar[Mapping[str, str]] = {"storeys": "levels", "heights": "levels", "chains": "ties"}
 
     name: Name | None = Field(None, description="what to call it")
-    site: dict[str, Any] | str | None = Field(
-        None, description="its site: the file, or its fields; --site is another way"
-    )
+    site: dict[str, Any] | str | None = Field(None, description="its site: the file, or its fields")
     levels: Annotated[list[Height], Field(min_length=2, max_length=200)] = quantity(
         "heights of foot, floors and top of the walls above the foundation", unit="m", example=[0.0, 3.5, 6.5]
     )
@@ -244,13 +242,13 @@ class Building(Part):
     masonry: Masonry = Field(description="its masonry")
     interlock: Courses | None = Field(None, description="how its walls interlock")
     walls: Annotated[list[Wall], Field(min_length=1, max_length=MAX_WALLS)] = Field(description="its walls")
-    floors: list[Floor] = Field([], max_length=MAX_WALLS, description="its floors")
+    floors: list[BuildingFloor] = Field([], max_length=MAX_WALLS, description="its floors")
     roof: Bearing | None = Field(None, description="its roof, at the last level")
     ties: list[BuildingTie] = Field([], max_length=MAX_WALLS, description="its ties")
     gables: list[Gable] = Field([], max_length=MAX_WALLS, description="its gables")
     parapets: list[Parapet] = Field([], max_length=MAX_WALLS, description="its parapets")
     bell_gables: list[BellGable] = Field([], max_length=MAX_WALLS, description="its bell gables")
-    corners: list[Corner] = Field([], max_length=MAX_WALLS, description="its corners")
+    corners: list[WallCorner] = Field([], max_length=MAX_WALLS, description="its corners")
     rebound: float | None = quantity(
         "rate after an impact on the building over that before, for time histories", default=None, ge=0, lt=1
     )

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from rocking_cli.questions.building.asked import BuildingAsked
 
 DETAILED = 4  # kinds of mechanisms whose worst has a section, so that the sheet has six pages at most
-LISTED, MOST = 8, 40  # rows of the table on the first page, and of that of all
+LISTED_FIRST, MAX_LISTED = 8, 40  # rows of the table on the first page, and of that of all
 
 
 def write_sheet(
@@ -54,7 +54,7 @@ def write_sheet(
     figure = in_language(say, partial(draw_building, found, words(language)))
     counted = list({row.made.kind: row for row in reversed(found.rows)}.values())[::-1][:DETAILED]
     context: dict[str, Any] = {
-        "found": found, "ranked": rows, "listed": LISTED, "most": MOST,
+        "found": found, "ranked": rows, "listed": LISTED_FIRST, "most": MAX_LISTED,
         "designed": [] if designed is None else [*map(guarded, designed_in_words(designed, say))],
         "counted": [*map(partial(_section, say), counted)],
         "verdict": [*map(guarded, verdict(found, say))], "conditions": [*map(guarded, conditions(found, say))],
@@ -85,7 +85,7 @@ def _section(say: Any, row: Found) -> dict[str, Any]:
     sides = shown(row.verification, spoken.say)
     parts = [part for where, each in sides.items() for part in spoken.in_short(row.verification, each, where)]
     tables = [part for part in translated(spoken.say, View({}, parts)).parts if isinstance(part, Table)]
-    cautions: Sequence[str] = cautions_of(row.made.structure(), say)
+    cautions: Sequence[str] = cautions_of(row.structure.mechanism, say)
     limits = limits_in_words(row.conclusion, spoken.say)
     return {
         "title": title_of(row, say), "row": row, "tables": tables[:2],

@@ -11,28 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 
-from rocking_cli.plotting.style import (
-    EARTH,
-    EXCEEDED,
-    FAINT,
-    HALO,
-    INK,
-    LABEL,
-    MEASURE,
-    MEDIUM,
-    RANKS,
-    RESTING_COLOUR,
-    SHADE,
-    SMALL,
-    SPARED,
-    STONE,
-    THIN,
-    TICK,
-    TIE,
-    WORDS,
-    heading_of_all,
-    panels,
-)
+from rocking_cli.plotting import style
 from rocking_cli.questions.building.description import Building, Wall
 from rocking_cli.questions.building.made import held_levels, tie_height
 from rocking_cli.questions.building.study import Assessed, Found
@@ -41,8 +20,12 @@ from rocking_cli.views.view import number
 
 MAX_WALLS_DRAWN = 12
 GRAVITY = 9.80665
-WALL_COLOUR, CONDITIONAL = RESTING_COLOUR, WORDS[STONE]
-COLOURS = {Concluded.SATISFIED: SPARED, Concluded.SATISFIED_IF: CONDITIONAL, Concluded.NOT_SATISFIED: EXCEEDED}
+WALL_COLOUR, CONDITIONAL = style.RESTING_COLOUR, style.WORDS[style.STONE]
+COLOURS = {
+    Concluded.SATISFIED: style.SPARED,
+    Concluded.SATISFIED_IF: CONDITIONAL,
+    Concluded.NOT_SATISFIED: style.EXCEEDED,
+}
 """Colours of mechanisms by their verdicts; others are dark."""
 INCHES_A_ROW = 2.5
 Say = Callable[..., str]
@@ -58,11 +41,11 @@ def draw_building(found: Assessed, say: Say) -> Figure:
         _draw_elevation(each, building, wall)
         rows = [(rank, row) for rank, row in enumerate(found.rows, 1) if row.made.wall == wall.name]
         _draw_mechanisms(each, wall, rows)
-        each.set_title(wall.name, fontsize=LABEL, color=INK, loc="left", parse_math=False)
+        each.set_title(wall.name, fontsize=style.LABEL, color=style.INK, loc="left", parse_math=False)
     title = say("picture", name=building.name or say("building"))
     if len(order) > len(shown):
         title += say("picture_more", count=len(shown), of=len(order))
-    heading_of_all(figure, title)
+    style.heading_of_all(figure, title)
     return figure
 
 
@@ -72,20 +55,22 @@ def draw_description(building: Building, say: Say) -> Figure:
     figure, axes = _panels(2 * len(shown), 2)
     for wall, (front, section) in zip(shown, zip(axes[::2], axes[1::2], strict=True), strict=False):
         _draw_elevation(front, building, wall, named=True)
-        front.set_title(wall.name, fontsize=LABEL, color=INK, loc="left", parse_math=False)
+        front.set_title(wall.name, fontsize=style.LABEL, color=style.INK, loc="left", parse_math=False)
         _draw_section(section, building, wall, say)
-        section.set_title(say("section", name=wall.name), fontsize=LABEL, color=INK, loc="left", parse_math=False)
+        section.set_title(
+            say("section", name=wall.name), fontsize=style.LABEL, color=style.INK, loc="left", parse_math=False
+        )
     title = say("description", name=building.name or say("building"))
     if len(building.walls) > len(shown):
         title += say("picture_more", count=len(shown), of=len(building.walls))
-    heading_of_all(figure, title)
+    style.heading_of_all(figure, title)
     return figure
 
 
 def _panels(count: int, pairs: int) -> tuple[Figure, list[Axes]]:
-    """Return a figure with panels of drawings in two columns; the last may stay empty."""
+    """Return a figure with style.panels of drawings in two columns; the last may stay empty."""
     rows = ceil(count / 2)
-    figure, axes = panels(INCHES_A_ROW * rows, rows, 2)
+    figure, axes = style.panels(INCHES_A_ROW * rows, rows, 2)
     every = list(axes.flat)
     for each in every:
         each.set_axis_off()
@@ -116,22 +101,24 @@ def _draw_elevation(axes: Axes, building: Building, wall: Wall, *, named: bool =
             for hole in getattr(on_top, "openings", ()):
                 _add(axes, Rectangle((start + hole.x, high + hole.z), hole.width, hole.height), "white")
     for z in levels[foot : top + 1]:
-        axes.plot([0.0, right], [z, z], color=FAINT, linewidth=THIN, zorder=2)
-        axes.text(-0.02 * right, z, f"{z:g}", fontsize=SMALL, color=FAINT, ha="right", va="center")
+        axes.plot([0.0, right], [z, z], color=style.FAINT, linewidth=style.THIN, zorder=2)
+        axes.text(-0.02 * right, z, f"{z:g}", fontsize=style.SMALL, color=style.FAINT, ha="right", va="center")
     for tie in building.ties:
         if wall.name in tie.walls:
             z = tie_height(building, tie)
             places = (np.arange(tie.bars) + 0.5) * right / tie.bars
-            axes.plot(places, [z] * tie.bars, "x", color=TIE["color"], markersize=4, zorder=4)
-    axes.plot([-0.1 * right, 1.1 * right], [levels[0]] * 2, color=EARTH, linewidth=MEDIUM, zorder=1)
+            axes.plot(places, [z] * tie.bars, "x", color=style.TIE["color"], markersize=4, zorder=4)
+    axes.plot([-0.1 * right, 1.1 * right], [levels[0]] * 2, color=style.EARTH, linewidth=style.MEDIUM, zorder=1)
     if named:
         axes.annotate("", (0.0, low - 0.4), (right, low - 0.4), annotation_clip=False,
-                      arrowprops={"arrowstyle": "<->", "color": MEASURE})  # fmt: skip
-        axes.text(right / 2, low - 0.5, f"{right:g} m", fontsize=SMALL, color=MEASURE, ha="center", va="top")
+                      arrowprops={"arrowstyle": "<->", "color": style.MEASURE})  # fmt: skip
+        axes.text(
+            right / 2, low - 0.5, f"{right:g} m", fontsize=style.SMALL, color=style.MEASURE, ha="center", va="top"
+        )
 
 
 def _add(axes: Axes, patch: Any, colour: str) -> None:
-    patch.set(facecolor=colour, edgecolor=INK, linewidth=THIN, zorder=2)
+    patch.set(facecolor=colour, edgecolor=style.INK, linewidth=style.THIN, zorder=2)
     axes.add_patch(patch)
 
 
@@ -141,8 +128,13 @@ def _draw_mechanisms(axes: Axes, wall: Wall, rows: Sequence[tuple[int, Found]]) 
     span = max(row.made.hinge[1] for _, row in rows) - min(row.made.hinge[0] for _, row in rows)
     for k, (rank, row) in enumerate(rows):
         made, end = row.made, row.conclusion.concluded
-        colour, (low, high) = COLOURS.get(end, RANKS[0]), made.hinge
-        look: dict[str, Any] = {"color": colour, "linewidth": 2.2 if k == 0 else MEDIUM, "zorder": 5, "clip_on": False}
+        colour, (low, high) = COLOURS.get(end, style.RANKS[0]), made.hinge
+        look: dict[str, Any] = {
+            "color": colour,
+            "linewidth": 2.2 if k == 0 else style.MEDIUM,
+            "zorder": 5,
+            "clip_on": False,
+        }
         if made.kind == "bending":
             x = wall.length * 0.12
             axes.annotate("", (x, low), (x, high), arrowprops={"arrowstyle": "<->", "color": colour, "shrinkA": 0})
@@ -160,8 +152,8 @@ def _draw_mechanisms(axes: Axes, wall: Wall, rows: Sequence[tuple[int, Found]]) 
             at += 0.045 * span
         taken.append(at)
         text = f"{rank}: {number(row.ratio, 3)}"
-        axes.text(1.02 * wall.length, at, text, fontsize=TICK if k == 0 else SMALL, color=colour, va="center",
-                  fontweight="bold" if k == 0 else "normal", path_effects=HALO, zorder=6)  # fmt: skip
+        axes.text(1.02 * wall.length, at, text, fontsize=style.TICK if k == 0 else style.SMALL, color=colour, va="center",
+                  fontweight="bold" if k == 0 else "normal", path_effects=style.HALO, zorder=6)  # fmt: skip
 
 
 def _draw_section(axes: Axes, building: Building, wall: Wall, say: Say) -> None:
@@ -171,28 +163,30 @@ def _draw_section(axes: Axes, building: Building, wall: Wall, say: Say) -> None:
     outer, reach = 0.0, 0.45 * (levels[top] - levels[foot])
     for storey in range(foot + 1, top + 1):
         t = wall.thick(storey)
-        _add(axes, Rectangle((outer - t, levels[storey - 1]), t, levels[storey] - levels[storey - 1]), SHADE)
+        _add(axes, Rectangle((outer - t, levels[storey - 1]), t, levels[storey] - levels[storey - 1]), style.SHADE)
         middle = (levels[storey - 1] + levels[storey]) / 2
-        axes.text(0.15, middle, f"{t:g} m", fontsize=SMALL, color=MEASURE, va="center")
+        axes.text(0.15, middle, f"{t:g} m", fontsize=style.SMALL, color=style.MEASURE, va="center")
     for name, level, each in building.bearing:
         if wall.name not in each.walls:
             continue
         z, inner = levels[level], outer - wall.thick(level)
-        axes.plot([inner - reach, inner + (each.seat or 0.0)], [z, z], color=INK, linewidth=2.0, zorder=3)
+        axes.plot([inner - reach, inner + (each.seat or 0.0)], [z, z], color=style.INK, linewidth=2.0, zorder=3)
         how = say("slides") if each.sliding else say("held")
         load = each.load * GRAVITY / 1e3
         text = f"{name}: {load:.3g} kN/m², {each.span:g} m, {how}"
-        axes.text(inner - 0.1, z + 0.1, text, fontsize=SMALL, color=INK, va="bottom", ha="right", parse_math=False)
+        axes.text(
+            inner - 0.1, z + 0.1, text, fontsize=style.SMALL, color=style.INK, va="bottom", ha="right", parse_math=False
+        )
         if each.thrust:
-            axes.annotate(f"{each.thrust / 1e3:g} kN/m", (outer + 0.1, z), (outer + 1.2, z), fontsize=SMALL,
-                          color=EXCEEDED, va="center", arrowprops={"arrowstyle": "<-", "color": EXCEEDED})  # fmt: skip
+            axes.annotate(f"{each.thrust / 1e3:g} kN/m", (outer + 0.1, z), (outer + 1.2, z), fontsize=style.SMALL,
+                          color=style.EXCEEDED, va="center", arrowprops={"arrowstyle": "<-", "color": style.EXCEEDED})  # fmt: skip
     for tie in building.ties:
         if wall.name in tie.walls:
             z = tie_height(building, tie)
-            axes.plot([outer - reach - wall.thick(tie.level), outer], [z, z], zorder=4, **TIE)
+            axes.plot([outer - reach - wall.thick(tie.level), outer], [z, z], zorder=4, **style.TIE)
             text = f"{tie.bars} ø {1e3 * tie.diameter:.0f} mm"
-            axes.text(outer - reach, z - 0.1, text, fontsize=SMALL, color=TIE["color"], va="top")
+            axes.text(outer - reach, z - 0.1, text, fontsize=style.SMALL, color=style.TIE["color"], va="top")
     for level in held_levels(building, wall):
-        axes.plot(outer, levels[level], "<", color=INK, markersize=3, zorder=5)
+        axes.plot(outer, levels[level], "<", color=style.INK, markersize=3, zorder=5)
     low = levels[0]
-    axes.plot([outer - reach - 1, outer + 1.5], [low, low], color=EARTH, linewidth=MEDIUM, zorder=1)
+    axes.plot([outer - reach - 1, outer + 1.5], [low, low], color=style.EARTH, linewidth=style.MEDIUM, zorder=1)

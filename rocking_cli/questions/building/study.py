@@ -160,13 +160,12 @@ class Search:
         structure = Structure(made.structure())
         return Found(made, structure, verify(structure, floor_of(self.building, self.site, made.z)))
 
-    def ratio(self, made: Made) -> float:
-        """Return capacity over demand of a mechanism; infinite if it cannot be verified."""
+    def tried(self, made: Made) -> Found | None:
+        """Return a mechanism with its verification; None if it cannot be verified."""
         try:
-            ratio = self.verified(made).verification.ratio
+            return self.verified(made)
         except (InputError, MechanismError, SolverError):
-            return inf
-        return inf if isnan(ratio) else ratio
+            return None
 
     def weakest(
         self, make: Callable[..., Made], *bounds: tuple[float, float], known: float | None = None
@@ -180,9 +179,10 @@ class Search:
 
         def at(*arguments: float) -> float:
             try:
-                return self.ratio(make(*arguments))
+                each = self.tried(make(*arguments))
             except NotMade:
                 return inf
+            return inf if each is None or isnan(each.ratio) else each.ratio
 
         axes = [np.linspace(*each, COARSE + 1).tolist() for each in bounds]
         values = {place: at(*place) for place in [*product(*axes)][known is not None :]}
@@ -237,8 +237,9 @@ class Search:
         z, *angle = self.weakest(about, (low, end), *crack, known=known)
         z = round(z, 3)
         between = z > low + LEVEL_HEIGHT and (z < high - LEVEL_HEIGHT or (is_last and not has_gable))
-        if between and (of_level is None or self.ratio(about(z, *angle)) < (1 - LOWER) * of_level.ratio):
-            yield from self._one(partial(about, z, *angle))
+        if between and (lower := self.tried(about(z, *angle))) is not None:
+            if of_level is None or lower.ratio < (1 - LOWER) * of_level.ratio:
+                yield lower
 
     def of_others(self) -> Iterator[Found | LeftOutMechanism]:
         """Yield the mechanisms of what stands on walls, and of corners."""

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from math import degrees
+from operator import itemgetter
 from typing import Any, NamedTuple
 
 from rocking_cli.core.structure_file import fields_text
@@ -16,15 +17,16 @@ from rocking_cli.questions.building.study import (
     LENGTHENED,
     Assessed,
     BarsOfLevel,
+    BarsTried,
     Found,
     floor_of,
 )
 from rocking_cli.studies.conclusion import Concluded, Effect
 from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, table_of
 from rocking_cli.views.conclusion import conclusion_data, limit_in_words, next_in_words, of_verification
-from rocking_cli.views.sheet.language import Language, texts_of
+from rocking_cli.views.sheet.language import Language, texts_of, translated
 from rocking_cli.views.verification import showing
-from rocking_cli.views.view import Aside, Table, View, number
+from rocking_cli.views.view import Aside, Table, View
 
 PACKAGE = "rocking_cli.questions.building"
 NAMED = 2  # mechanisms that a sentence names
@@ -32,7 +34,7 @@ SHOWN_ROWS = 12  # mechanisms that terminals and the first page list
 
 
 class RankedMechanism(NamedTuple):
-    """A mechanism with its rank, from 1, and what names it and its verdict in a language."""
+    """A mechanism with its rank, from 1, what names it, its verdict, and what governs it, in a language."""
 
     rank: int
     found: Found
@@ -46,22 +48,26 @@ def words(key: str, *, is_plain: bool = True) -> Language:
     return Language(key, texts_of(PACKAGE, key), is_plain)
 
 
+def code_words(found: Assessed, say: Language) -> Language:
+    """Return a language with the texts of the code that verified a building."""
+    spoken: Language = showing(found.governs.verification).in_language(say.key).say
+    return spoken
+
+
 def title_of(found: Found, say: Language) -> str:
     """Return what a mechanism is: the wall, how it moves, and where."""
     made = found.made
-    low, high = (f"{z:.4g}" for z in made.hinge)
-    key = f"{made.kind}_without" if made.without_gable else made.kind
+    low, high = (say.formula(f"{z:.4g}") for z in made.hinge)
     name = made.part or say(f"{made.kind}_on", wall=made.wall, other=made.other)
-    return say(key, wall=made.wall, z=say.formula(low), top=say.formula(high), name=name)
+    return say(f"{made.kind}_without" if made.without_gable else made.kind, wall=made.wall, z=low, top=high, name=name)
 
 
 def ranked(found: Assessed, say: Language) -> list[RankedMechanism]:
     """Return the mechanisms with their ranks and words."""
-    rows = []
+    spoken, rows = code_words(found, say), list[RankedMechanism]()
     for rank, each in enumerate(found.rows, 1):
-        end, spoken = each.conclusion, showing(each.verification).in_language(say.key).say
-        verified = each.verification.deciding
-        method = verified.methods[end.method].title if end.method in verified.methods else "time histories"
+        end, methods = each.conclusion, each.verification.deciding.methods
+        method = methods[end.method].title if end.method in methods else "time histories"
         limits = f"{end.limit_state} {spoken(method.removesuffix(f' at {end.limit_state}'))}".strip()
         rows.append(RankedMechanism(rank, each, title_of(each, say), say(f"short_{end.concluded.value}"), limits))
     return rows
@@ -86,6 +92,13 @@ COLUMNS: Sequence[Column[RankedMechanism]] = (
 )
 
 
+TRIED: Sequence[Column[BarsTried]] = (
+    only_shown("bars", of("diameter"), lambda diameter: f"{1000 * diameter:.0f} mm"),
+    only_shown("least ratio", of("ratio")),
+    only_shown("mechanism", of("name"), text=True),
+)
+
+
 def view(found: Assessed, designed: BarsOfLevel | None, say: Language) -> View:
     """Show the verdict on a building, its mechanisms, the worst first, and what is not verified.
 
@@ -100,24 +113,22 @@ def view(found: Assessed, designed: BarsOfLevel | None, say: Language) -> View:
     """
     rows = ranked(found, say)
     table = table_of(say("table", count=len(rows)), COLUMNS, rows)
-    shown = Table(table.title, [say(each) for each in table.columns], table.rows, table.numbers, table.ranks,
-                  range(SHOWN_ROWS, len(rows)))  # fmt: skip
-    parts: list[Table | str] = [" ".join(verdict(found, say)), shown]
-    if len(rows) > SHOWN_ROWS:
-        parts.append(say("more_rows", count=len(rows) - SHOWN_ROWS))
+    parts: list[Table | str] = [" ".join(verdict(found, say)), replace(table, asides=range(SHOWN_ROWS, len(rows)))]
+    parts += [say("more_rows", count=len(rows) - SHOWN_ROWS)] * (len(rows) > SHOWN_ROWS)
     if found.strengthened is not None:
         parts += [_compared(found, found.strengthened, say), *verdict(found.strengthened, say)]
     if designed is not None:
-        parts += _designed(designed, say)
+        title = say("designed", level=designed.level)
+        parts += [table_of(title, TRIED, designed.tried), *designed_in_words(designed, say)]
     parts += [*conditions(found, say), *notes(found, say)]
-    return View(lambda: data(found, designed, say), parts)
+    return translated(say, View(lambda: data(found, designed, say), parts))
 
 
 def verdict(found: Assessed, say: Language) -> Iterator[str]:
     """Yield the sentences of the verdict on a building."""
     worst, counts = found.governs, Counter(each.conclusion.concluded for each in found.rows)
     end, name = found.conclusion, found.building.name or say("building")
-    spoken = showing(worst.verification).in_language(say.key).say
+    spoken = code_words(found, say)
     yield say(f"verdict_{end.concluded.value}", name=name, site=found.site.site.name or say("the site"))
     yield say("governing", mechanism=title_of(worst, say), count=len(found.rows))
     yield from of_verification(worst.verification, spoken)[1:2]
@@ -130,8 +141,8 @@ def verdict(found: Assessed, say: Language) -> Iterator[str]:
 def conditions(found: Assessed, say: Language) -> Iterator[str]:
     """Yield the conditions of the mechanisms that are satisfied only on conditions, each kind once."""
     of_key: dict[str, list[tuple[str, str]]] = {}
+    spoken = code_words(found, say)
     for row in found.rows:
-        spoken = showing(row.verification).in_language(say.key).say
         for limit in (each for each in row.conclusion.limits if each.effect is not Effect.REPLACES):
             of_key.setdefault(limit.key, []).append((limit_in_words(limit, spoken), title_of(row, say)))
     for entries in of_key.values():
@@ -174,28 +185,15 @@ def notes(found: Assessed, say: Language) -> Iterator[str]:
 
 def _compared(found: Assessed, other: Assessed, say: Language) -> Table:
     """Return the least ratio of each kind of mechanism of each wall in both buildings."""
-
-    def least(of: Assessed) -> dict[tuple[str, str], float]:
-        ratios: dict[tuple[str, str], float] = {}
-        for row in of.rows:
-            key = row.made.wall, row.made.kind
-            ratios[key] = min(row.ratio, ratios.get(key, row.ratio))
-        return ratios
-
-    before, after = least(found), least(other)
-    rows = [
-        [key[0], say(f"kind_{key[1]}"), *(number(ratios.get(key), 4) for ratios in (before, after))]
-        for key in sorted({*before, *after}, key=lambda key: before.get(key, after.get(key, 0.0)))
-    ]
-    heads = [say(each) for each in ("wall", "kind", "existing", "strengthened")]
-    return Table(say("compared"), heads, rows, (2, 3))
-
-
-def _designed(found: BarsOfLevel, say: Language) -> Iterator[Table | str]:
-    rows = [[f"{1000 * each.diameter:.0f} mm", number(each.ratio, 4), each.name] for each in found.tried]
-    heads = [say(each) for each in ("bars", "least ratio", "mechanism")]
-    yield Table(say("designed", level=found.level), heads, rows, (0, 1))
-    yield from designed_in_words(found, say)
+    least: dict[tuple[str, str], dict[bool, float]] = {}
+    for after, rows in enumerate((found.rows, other.rows)):
+        for row in rows:
+            of_both = least.setdefault((row.made.wall, row.made.kind), {})
+            of_both[bool(after)] = min(row.ratio, of_both.get(bool(after), row.ratio))
+    cells = [(wall, say(f"kind_{kind}"), both.get(False), both.get(True)) for (wall, kind), both in least.items()]
+    heads = ("wall", "kind", "existing", "strengthened")
+    columns = [only_shown(head, itemgetter(k), text=k < 2) for k, head in enumerate(heads)]
+    return table_of(say("compared"), columns, sorted(cells, key=lambda row: row[2] or row[3] or 0.0))
 
 
 def designed_in_words(found: BarsOfLevel, say: Language) -> Iterator[str]:
