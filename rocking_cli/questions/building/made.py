@@ -259,8 +259,9 @@ def _sides(
 
 
 def _storey(building: Building, wall: Wall, z: float) -> int:
-    """Return the storey of a wall at and above a height; below it its first."""
-    return max(wall.reaches(building.count)[0] + 1, bisect_right(building.levels, z))
+    """Return the storey of a wall at and above a height; below it its first, above it its last."""
+    foot, top = wall.reaches(building.count)
+    return min(max(foot + 1, bisect_right(building.levels, z)), top)
 
 
 def overturning(building: Building, wall: Wall, z: float, angle: float | None = None, *, gable: bool = True) -> Made:
