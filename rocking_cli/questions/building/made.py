@@ -25,6 +25,7 @@ from rocking_cli.questions.building.description import (
     BellGable,
     Building,
     BuildingTie,
+    Courses,
     Gable,
     Hole,
     OnTop,
@@ -229,17 +230,19 @@ def _sides(
     courses = building.interlock
     if wall.connection != "interlock" or courses is None:
         return [], None
-    crossing = list[tuple[float, float, float]]()  # height above the hinge, thickness, density
-    reach = courses.reach or inf
+    crossing = list[tuple[float, Wall]]()  # height above the hinge
+    thickness, slope, reach = wall.thick(_storey(building, wall, z)), tan(angle), courses.reach or inf
     for side in map(building.wall.__getitem__, wall.sides):
         low, top = side.reaches(building.count)
         height = min(building.levels[top], high) - z
         if height > 0 and building.levels[low] <= z:
-            crossing.append((height, side.thick(_storey(building, side, z)), side.density or building.masonry.density))
-            reach = min(reach, side.length)
-    inner, slope, wedges = -wall.thick(_storey(building, wall, z)) / 2, tan(angle), list[dict[str, Any]]()
-    for foot, head in pairwise(sorted({0.0, *(height for height, _, _ in crossing)})) if slope else ():
-        along = [(thick, density) for height, thick, density in crossing if height >= head]
+            crossing.append((height, side))
+            reach = min(reach, max(side.length - thickness, 0.0))
+    inner, wedges = -thickness / 2, list[dict[str, Any]]()
+    cuts = {0.0, *(height for height, _ in crossing)} | {y for _, side in crossing for y in _steps(building, side, z)}
+    for foot, head in pairwise(sorted(cuts)) if slope and reach else ():
+        sides = [side for height, side in crossing if height >= head]
+        along = [(side.thick(_storey(building, side, z + foot)), _density(building, side)) for side in sides]
         depth = sum(thick for thick, _ in along)
         bend = min(max(reach / slope, foot), head)  # above it the side walls have no more
         back = [[inner - min(y * slope, reach), y] for y in (head, bend, foot)]
@@ -247,15 +250,47 @@ def _sides(
         distinct = [each for k, each in enumerate(corners) if each != corners[k - 1]]
         density = sum(thick * density for thick, density in along) / depth
         wedges.append({"polygon": distinct, "depth": depth, "density": density})
+    rubbing = [(height, _thinnest(building, side, z), _density(building, side), reach) for height, side in crossing]
+    return wedges, _friction(building, courses, slope, rubbing)
+
+
+def _density(building: Building, wall: Wall) -> float:
+    return wall.density or building.masonry.density
+
+
+def _steps(building: Building, wall: Wall, z: float) -> set[float]:
+    """Return the heights above a hinge at which a wall may change its thickness [m]."""
+    top = building.levels[wall.reaches(building.count)[1]]
+    return {y - z for y in building.levels if z < y < top} if isinstance(wall.thickness, list) else set()
+
+
+def _thinnest(building: Building, wall: Wall, z: float) -> float:
+    """Return the least thickness of a wall above a hinge [m], on which less weight rubs than on others."""
+    return min(wall.thick(each) for each in range(_storey(building, wall, z), wall.reaches(building.count)[1] + 1))
+
+
+def _friction(
+    building: Building, courses: Courses, slope: float, walls: Sequence[tuple[float, float, float, float]]
+) -> dict[str, Any] | None:
+    """Return the friction of courses of walls, each of a height, thickness, density, and reach, on a crack of a slope.
+
+    They are given as equal ones of the height of the highest, with the moment about the hinge that they have together.
+    A wall rubs up to where the crack has run through its reach: in the lowest share b of its height is the share
+    3 b^2 - 2 b^3 of the moment, as the weight grows with the depth below the top.
+    """
     left = courses.overlap - courses.course * slope
-    rows = int(round((high - z) / courses.course, 6))
-    if not crossing or left <= LEAST_OVERLAP * courses.overlap or rows < 1:
-        return wedges, None
-    thickness = sum(thick for _, thick, _ in crossing) / len(crossing)
-    friction = {"courses": rows, "overlap": round(left, 6), "thickness": thickness, "walls": len(crossing),
-                "friction": courses.friction, "height": _rounded(rows * courses.course),
-                "density": building.masonry.density}  # fmt: skip
-    return wedges, friction
+    rows = [int(round(height / courses.course, 6)) for height, *_ in walls]
+    if left <= LEAST_OVERLAP * courses.overlap or not any(rows):
+        return None
+    most, density, thickness = max(rows), building.masonry.density, 0.0
+    for n, (height, thick, weighs, reach) in zip(rows, walls, strict=True):
+        b = min(1.0, reach / (slope * height)) if slope else 1.0
+        share = n**2 * (n + 1) / (most**2 * (most + 1)) * b**2 * (3 - 2 * b)
+        thickness += thick * weighs / density * share / len(walls)
+    if thickness <= LEAST_OVERLAP * max(thick for _, thick, *_ in walls):
+        return None
+    return {"courses": most, "overlap": round(left, 6), "thickness": thickness, "walls": len(walls),
+            "friction": courses.friction, "height": _rounded(most * courses.course), "density": density}  # fmt: skip
 
 
 def _storey(building: Building, wall: Wall, z: float) -> int:
@@ -474,24 +509,31 @@ def corner(building: Building, k: int, z: float, angle: float) -> Made:
     assert courses is not None  # a corner without interlock was refused
     top = min(building.levels[each.reaches(building.count)[1]] for each in walls)
     height, slope = top - z, tan(angle)
+    densities = [_density(building, each) for each in walls]
     a, b = (each.thick(_storey(building, each, z)) for each in walls)
-    densities = [each.density or building.masonry.density for each in walls]
+    reaches = [max(min(each.length - t, courses.reach or inf), 0.0) for each, t in zip(walls, (b, a), strict=True)]
     size = (a + b) / sqrt(2)
-    mass = a * b * height * sum(densities) / 2
-    pieces = [(mass, complex(-size / 2, height / 2), mass * ((a**2 + b**2) / 24 + height**2 / 12))]
-    loads, furthest = list[dict[str, Any]](), size
-    for wall, t, other, density in zip(walls, (a, b), (b, a), densities, strict=True):
-        reach = min(wall.length, courses.reach or wall.length) - other
-        if slope and reach > 0:
-            corners = [0j, complex(0, height), complex(-min(height * slope, reach), height)]
-            corners += [complex(-reach, reach / slope)] * (height * slope > reach)
-            wedge = polygon("wedge", 1.0, [complex(each.real / sqrt(2), each.imag) for each in corners])
-            mass = density * t * abs(sum((p.conjugate() * q).imag for p, q in pairwise([*corners, corners[0]]))) / 2
-            centroid = wedge.centroid - (other + t / 2) / sqrt(2)
-            pieces.append((mass, centroid, mass * (wedge.inertia + t**2 / 24)))
-            furthest = max(furthest, (other + t + min(height * slope, reach)) / sqrt(2))
+    steps = {y for each in walls for y in _steps(building, each, z) if y < height}
+    pieces = list[tuple[float, complex, float]]()
+    for foot, head in pairwise(sorted({0.0, height, *steps})):
+        c, d = (each.thick(_storey(building, each, z + foot)) for each in walls)
+        mass, at = c * d * (head - foot) * sum(densities) / 2, complex(-(c + d) / sqrt(8), (foot + head) / 2)
+        pieces.append((mass, at, mass * ((c**2 + d**2) / 24 + (head - foot) ** 2 / 12)))
+        for t, other, start, density, reach in zip((c, d), (d, c), (b, a), densities, reaches, strict=True):
+            if slope and reach:
+                bend = min(max(reach / slope, foot), head)
+                back = [complex(other - start - min(y * slope, reach), y) for y in (head, bend, foot)]
+                corners = [complex(0, foot), complex(0, head), *back]
+                corners = [each for m, each in enumerate(corners) if each != corners[m - 1]]
+                area = abs(sum((p.conjugate() * q).imag for p, q in pairwise([*corners, corners[0]]))) / 2
+                wedge = polygon("wedge", 1.0, [complex(each.real / sqrt(2), each.imag) for each in corners])
+                mass, at = density * t * area, wedge.centroid - (other + t / 2) / sqrt(2)
+                pieces.append((mass, at, mass * (wedge.inertia + t**2 / 24)))
+    loads = list[dict[str, Any]]()
+    furthest = size + max(min(height * slope, each) for each in reaches) / sqrt(2)
+    for wall, other, reach in zip(walls, (b, a), reaches, strict=True):
         for name, level, each in _seats(building, wall, z):
-            along = other + max(min((level - z) * slope, reach), 0.0)
+            along, t = other + min((level - z) * slope, reach), -_inner(building, wall, level, 0.0)
             x = -(along / 2 + t - (each.seat / 3 if each.seat is not None else t / 2)) / sqrt(2)
             place = [_rounded(x), _rounded(level - z)]
             load = {"name": f"{name} on {wall.name}", "mass": round(each.load * each.span * along, 3), "at": place}
@@ -513,12 +555,10 @@ def corner(building: Building, k: int, z: float, angle: float) -> Made:
         "polygon": [[_rounded(x), _rounded(y)] for x, y in ((-size, 0), (0, 0), (0, height), (-furthest, height))],
         "one_sided": "positive",
     }  # fmt: skip
-    left, rows = courses.overlap - courses.course * slope, int(round(height / courses.course, 6))
-    if left > LEAST_OVERLAP * courses.overlap and rows >= 1:
-        fields["interlock"] = {
-            "courses": rows, "overlap": round(left, 6), "thickness": (a + b) / 2, "walls": 2,
-            "friction": courses.friction, "height": _rounded(rows * courses.course), "density": sum(densities) / 2,
-        }  # fmt: skip
+    thin = [_thinnest(building, each, z) for each in walls]
+    rubbing = [(height, *each) for each in zip(thin, densities, reaches, strict=True)]
+    if (friction := _friction(building, courses, slope, rubbing)) is not None:
+        fields["interlock"] = friction
     fields |= {key: value for key, value in (
         ("loads", loads), ("rebound", building.rebound), ("unusual", building.unusual),
     ) if value}  # fmt: skip
