@@ -30,6 +30,7 @@ LENGTHENED, DAMPING, LATER_DAMPING = 1.75, 0.05, 0.10  # T1 at SLV over that at 
 LEAST_REST = 0.05  # share of the last storey above the highest hinge that is tried
 LEAST_GABLE = 0.2  # the same of a gable
 LEVEL_HEIGHT = 0.01  # m; a weakest hinge this near a level is that of the level
+FAR_ABOVE = 10.0  # times the least ratio of a grid; a search has any larger one as this
 LOWER = 1e-3  # share by which a hinge between levels must be weaker to be listed beside them
 
 
@@ -160,10 +161,12 @@ class Search:
         return Found(made, structure, verify(structure, floor_of(self.building, self.site, made.z)))
 
     def ratio(self, made: Made) -> float:
-        """Return capacity over demand of a mechanism; infinite if it cannot be verified."""
+        """Return capacity over demand of a mechanism: none if it falls at rest; infinite if it cannot be verified."""
         try:
             ratio = self.verified(made).verification.ratio
-        except (InputError, MechanismError, SolverError):
+        except InputError as error:
+            return 0.0 if any(each.field in ("loads", "ties") for each in error.problems) else inf
+        except (MechanismError, SolverError):
             return inf
         return inf if isnan(ratio) else ratio
 
@@ -188,8 +191,12 @@ class Search:
         if known is not None:  # at the lower ends
             values[tuple(low for low, _ in bounds)] = known
         best = min(values, key=lambda place: (float(f"{values[place]:.9g}"), place))
-        if values[best] == inf:
+        if values[best] in (0.0, inf):
             return best
+
+        def bounded(*arguments: float) -> float:
+            return min(at(*arguments), FAR_ABOVE * values[best])  # an infinite value has no parabola
+
         if len(bounds) == 1:
             (x,), ((low, high),) = best, bounds
             step = (high - low) / COARSE
@@ -199,11 +206,11 @@ class Search:
                     return best
             ends = max(low, x - step), min(high, x + step)
             stops = {"maxiter": REFINED, "xatol": 0.01 * step}
-            found = minimize_scalar(at, bounds=ends, method="bounded", options=stops)
+            found = minimize_scalar(bounded, bounds=ends, method="bounded", options=stops)
             refined: tuple[float, ...] = (float(found.x),)
         else:
             stops = {"maxfev": REFINED * len(bounds), "xatol": 1e-3, "fatol": 1e-4}
-            found = minimize(lambda x: at(*x), best, method="Nelder-Mead", bounds=bounds, options=stops)
+            found = minimize(lambda x: bounded(*x), best, method="Nelder-Mead", bounds=bounds, options=stops)
             refined = tuple(map(float, found.x))
         return refined if float(found.fun) < values[best] * (1 - LOWER) else best
 
