@@ -32,7 +32,7 @@ from rocking_cli.questions.building.description import (
     Wall,
 )
 
-STRIPS = 6  # of a gable, each with its mean length: the mass is exact, the centroid 1.4 % too low
+STRIPS = 6  # of a gable, each with its mean length: the mass is exact, the centroid 1.4 % too high
 ARCH_STRESS, ARCH_DEPTH, ARCH_RISE = 1.5, 0.1, 0.9  # of a wall that bends as an arch [EN 1996-1-1, 6.3.2]
 MOST_SLENDER_ARCH = 20.0  # length over thickness
 MOST_ARCH_RATIO = 0.57  # g, as one rigid body of the inertia of two has at most 1/sqrt(3) as its ratio at rest
