@@ -212,10 +212,10 @@ class BellGable(OnTop):
         """Check that bells hang somewhere."""
         if (given.get("bells") is None) != (given.get("bells_height") is None):
             yield ("bells_height",), "bells have a mass and a height: give both"
-        for k, each in enumerate(given.get("openings") or ()):
-            end = each["z"] + each["height"] if sound("openings", k) and sound("height") else 0.0
-            if end > given["height"]:
-                yield ("openings", k), f"ends {end:g} m above the foot of a gable {given['height']:g} m high"
+        openings, height = given.get("openings"), given.get("height")
+        for k, each in enumerate(openings if isinstance(openings, list) and isinstance(height, float) else ()):
+            if sound("openings", k) and (end := each["z"] + each["height"]) > height:
+                yield ("openings", k), f"ends {end:g} m above the foot of a gable {height:g} m high"
 
 
 class Corner(Part):

@@ -25,6 +25,7 @@ from rocking_cli.verification.code import SiteFile
 from rocking_cli.verification.results import Histories, Verification
 
 COARSE, REFINED = 4, 8  # intervals of a search in which the least is looked for, and evaluations in the best of them
+SEARCHED = 32  # evaluations of a search by two arguments
 PERIOD_FACTOR = 0.05  # C1 of T1 = C1 H^(3/4), H in m
 LENGTHENED, DAMPING, LATER_DAMPING = 1.75, 0.05, 0.10  # T1 at SLV over that at SLD, and damping ratios
 LEAST_REST = 0.05  # share of the last storey above the highest hinge that is tried
@@ -209,7 +210,11 @@ class Search:
             found = minimize_scalar(bounded, bounds=ends, method="bounded", options=stops)
             refined: tuple[float, ...] = (float(found.x),)
         else:
-            stops = {"maxfev": REFINED * len(bounds), "xatol": 1e-3, "fatol": 1e-4}
+            corners = [best]  # a first simplex half a cell wide, into the bounds
+            for k, (x, (low, high)) in enumerate(zip(best, bounds, strict=True)):
+                step = (high - low) / COARSE / 2 * (1 if x < (low + high) / 2 else -1)
+                corners.append((*best[:k], x + step, *best[k + 1 :]))
+            stops = {"maxfev": SEARCHED, "xatol": 1e-3, "fatol": 1e-4, "initial_simplex": corners}
             found = minimize(lambda x: bounded(*x), best, method="Nelder-Mead", bounds=bounds, options=stops)
             refined = tuple(map(float, found.x))
         return refined if float(found.fun) < values[best] * (1 - LOWER) else best
