@@ -333,7 +333,39 @@ def overturning(building: Building, wall: Wall, z: float, angle: float | None = 
     without = " without its gable" if not gable and any(each.wall == wall.name for each in building.gables) else ""
     name = f"{wall.name}: overturning{without} about {z:.4g} m"
     hinge = z, max(each.high for each in parts)
+    if wedges:
+        fields = _by_its_numbers(fields, outer)
     return Made("overturning", wall.name, name, z, hinge, kind, fields, crack if held else None)
+
+
+def _by_its_numbers(fields: dict[str, Any], outer: float) -> dict[str, Any]:
+    """Return the fields of a wall whose wedges have its centroid behind its foot: it leans on the building at rest.
+
+    A body by its parts must stand on its foot; one by its numbers has a left foot as far behind as the wedges go.
+    """
+    plates = [[complex(*corner) for corner in each["polygon"]] for each in fields["parts"]]
+    weighs = [each.get("density", fields["density"]) * each["depth"] for each in fields["parts"]]
+    masses = [_area(corners) * each for corners, each in zip(plates, weighs, strict=True)]
+    bodies = [polygon("part", 1.0, corners) for corners in plates]
+    whole = sum(masses)
+    centroid = sum(mass * each.centroid for mass, each in zip(masses, bodies, strict=True)) / whole
+    if centroid.real > min(each.real for each in plates[0]):
+        return fields
+    inertia = sum(m * (b.inertia + abs(b.centroid - centroid) ** 2) for m, b in zip(masses, bodies, strict=True))
+    top, behind = max(each.imag for each in plates[0]), min(each.real for corners in plates for each in corners)
+    high = max(each.imag for corners in plates for each in corners)
+    numbers: dict[str, Any] = {
+        "mass": round(whole, 3), "inertia": round(inertia, 3),
+        "centroid": [_rounded(centroid.real), _rounded(centroid.imag)],
+        "left_foot": [behind, 0.0], "right_foot": [_rounded(outer), 0.0], "depth": fields["depth"],
+        "polygon": [[plates[0][0].real, 0.0], [outer, 0.0], [outer, max(top, high)], [behind, high]],
+    }  # fmt: skip
+    return numbers | {key: value for key, value in fields.items() if key not in ("parts", "density", "depth")}
+
+
+def _area(corners: Sequence[complex]) -> float:
+    """Return the area within corners in order."""
+    return abs(sum((p.conjugate() * q).imag for p, q in pairwise([*corners, corners[0]]))) / 2
 
 
 def _given_angle(building: Building) -> float:
@@ -525,9 +557,8 @@ def corner(building: Building, k: int, z: float, angle: float) -> Made:
                 back = [complex(other - start - min(y * slope, reach), y) for y in (head, bend, foot)]
                 corners = [complex(0, foot), complex(0, head), *back]
                 corners = [each for m, each in enumerate(corners) if each != corners[m - 1]]
-                area = abs(sum((p.conjugate() * q).imag for p, q in pairwise([*corners, corners[0]]))) / 2
                 wedge = polygon("wedge", 1.0, [complex(each.real / sqrt(2), each.imag) for each in corners])
-                mass, at = density * t * area, wedge.centroid - (other + t / 2) / sqrt(2)
+                mass, at = density * t * _area(corners), wedge.centroid - (other + t / 2) / sqrt(2)
                 pieces.append((mass, at, mass * (wedge.inertia + t**2 / 24)))
     loads = list[dict[str, Any]]()
     furthest = size + max(min(height * slope, each) for each in reaches) / sqrt(2)
@@ -551,7 +582,7 @@ def corner(building: Building, k: int, z: float, angle: float) -> Made:
     fields: dict[str, Any] = {
         "mass": round(whole, 3), "inertia": round(inertia, 3),
         "centroid": [_rounded(centroid.real), _rounded(centroid.imag)],
-        "left_foot": [_rounded(-size), 0.0], "right_foot": [0.0, 0.0],
+        "left_foot": [_rounded(-size if centroid.real > -size else -furthest), 0.0], "right_foot": [0.0, 0.0],
         "polygon": [[_rounded(x), _rounded(y)] for x, y in ((-size, 0), (0, 0), (0, height), (-furthest, height))],
         "one_sided": "positive",
     }  # fmt: skip

@@ -326,6 +326,28 @@ class TestSideWalls:
         _, given = self.front(reach=1.0)
         assert made.fields == given.fields
 
+    def test_wedges_behind_its_foot_lean_on_the_building(self):
+        """At 45 degrees no friction is left: two wedges of 6 x 6 m, whose weight keeps the wall from standing alone."""
+        house, made = self.front(angle=pi / 4, b={**self.A, "name": "b"})
+        wall, wedges = 0.6 * 6 * 8, 2 * 0.5 * 6 * 6 / 2
+        by_hand = (wall * 0.3 + wedges * (0.6 + 2)) / (wall * 3 + wedges * 4)
+        structure = made.structure()
+        assert structure.uplift(Direction.POSITIVE) == pytest.approx(by_hand, rel=1e-4)
+        assert structure.total_mass() == pytest.approx(1800 * (wall + wedges), rel=1e-6)
+        assert verify(Structure(structure), site_at(0.0)).ratio > 1
+
+    def test_where_they_begin_to_lean_nothing_jumps(self):
+        """Around the angle at which the weight is above the inner face, a body is by its parts, then by numbers."""
+        angles = np.linspace(0.3, 0.5, 21)
+        made = [self.front(angle=float(angle))[1] for angle in angles]
+        ways = ["parts" in each.fields for each in made]
+        k = ways.index(False)
+        assert ways == [True] * k + [False] * (21 - k) and k > 1
+        values = [each.structure().uplift(Direction.POSITIVE) for each in made[k - 2 : k + 2]]
+        assert np.abs(np.diff(values, 2)).max() < 1e-4
+        inertias = [each.structure().coefficients(np.zeros(1), Direction.POSITIVE).I[0] for each in made[k - 2 : k + 2]]
+        assert np.abs(np.diff(inertias, 2)).max() < 1e-3 * inertias[0]
+
     def test_their_solid_by_quadrature(self):
         """Mass, centroid and inertia of wall and wedges by a fine grid of points of the solid."""
         _, made = self.front(b={**self.B, "density": 1800.0}, reach=1.5)
@@ -533,6 +555,20 @@ class TestCorners:
         rubs = 0.4 * 30 * 31 * 0.2 * 0.6 * (0.15 - 0.2 * slope) * thin * 1800 * G * 2.0 * (3 * b**2 - 2 * b**3)
         by_hand = (-moments[0] * G + rubs - 3000 * 6) / (moments[1] * G)
         assert made.structure().uplift(Direction.POSITIVE) == pytest.approx(by_hand, rel=5e-3)
+
+    def test_a_corner_whose_wedges_are_behind_its_foot(self):
+        """Both wedges end 0.9 m behind the column; the corner leans on the building."""
+        _, made = self.made(0.0, 0.6)
+        slope, total, moment, high = tan(0.6), 0.0, 0.0, 0.0
+        for y in (np.arange(3000) + 0.5) * 0.002:
+            u = y * slope
+            for area, x in ((0.2, 0.45), (0.5 * u, 0.4 + u / 2 + 0.25), (0.4 * u, 0.5 + u / 2 + 0.2)):
+                weight = area * 0.002 * 1800 * G
+                total, moment, high = total + weight, moment + weight * x / sqrt(2), high + weight * y
+        rubs = 0.4 * 30 * 31 * 0.2 * 0.6 * (0.15 - 0.2 * slope) * 0.9 * 1800 * G * 2.0
+        assert made.fields["mass"] * G == pytest.approx(total, rel=1e-5)
+        lean = made.structure().uplift(Direction.POSITIVE)
+        assert lean == pytest.approx((moment + rubs - 3000 * 6) / high, rel=1e-4)
 
     def test_floors_bear_on_the_inner_faces(self):
         """Of a floor on 0.4 m of the column and y tan(angle) of the wall, 5 cm from the inner face of the front."""

@@ -121,3 +121,87 @@ def random_house(seed):
     if r.random() < 0.4:
         fields["masonry"]["crushing"] = 1.5e6
     return fields
+
+
+def check(fields, heights, angles):
+    """Assert that no mechanism is weaker than the weakest that is named; return all that was found."""
+    house = building(fields)
+    search = Search(house, site_of(SITE))
+    answer = assess(house, search.site)
+    least, what = least_of_all(search, heights, angles)
+    weakest = min(answer.rows, key=lambda each: each.ratio)
+    assert weakest.ratio <= least * (1 + TOLERANCE), f"{weakest.made.name} at {weakest.ratio}, but {what} at {least}"
+    return answer, what
+
+
+MASONRY = {"density": 1800.0}
+PLAIN = {
+    "levels": [0.0, 3.2], "masonry": MASONRY,
+    "walls": [{"name": "front", "length": 7.0, "thickness": 0.4, "openings": [
+        {"storey": 1, "x": 1.0, "z": 1.0, "width": 5.0, "height": 1.5}]}],
+    "roof": {"load": 200.0, "span": 5.0, "walls": ["front"], "sliding": True, "thrust": 700.0},
+}  # fmt: skip
+TIED = {
+    "levels": [0.0, 3.2, 6.4], "masonry": MASONRY, "walls": [{"name": "front", "length": 7.0, "thickness": 0.4}],
+    "roof": {"load": 200.0, "span": 5.0, "walls": ["front"], "sliding": True},
+    "ties": [{"level": 2, "walls": ["front"], "length": 6.0, "bars": 1, "diameter": 0.014, "steel": "S235"}],
+}  # fmt: skip
+CROSSED = {
+    "levels": [0.0, 3.0, 6.0], "masonry": MASONRY, "interlock": {"course": 0.2, "overlap": 0.1},
+    "walls": [
+        {"name": "front", "length": 7.0, "thickness": 0.5, "sides": ["left", "right"], "connection": "interlock"},
+        {"name": "left", "length": 6.0, "thickness": 0.4, "sides": ["front"]},
+        {"name": "right", "length": 6.0, "thickness": [0.5, 0.4], "sides": ["front"], "connection": "interlock"},
+    ],
+    "floors": [{"name": "deck", "level": 1, "load": 400.0, "span": 4.0, "walls": ["left", "right"], "seat": 0.15}],
+    "roof": {"load": 200.0, "span": 5.0, "walls": ["front"], "sliding": True, "thrust": 600.0},
+    "gables": [{"wall": "left", "height": 1.5}, {"wall": "right", "height": 1.5}],
+    "corners": [{"walls": ["front", "left"]}],
+}  # fmt: skip
+
+
+class TestLeast:
+    def test_a_hinge_at_the_sill_of_a_wide_window(self):
+        """Above the sill there is little weight against the thrust of the roof."""
+        answer, what = check(PLAIN, 8, 1)
+        assert "front" in what
+        assert answer.governs.made.z == pytest.approx(1.0, abs=0.02)
+
+    @pytest.mark.rest
+    def test_a_hinge_below_a_tie(self):
+        answer, _ = check(TIED, 16, 1)
+        assert any(4.8 < each.made.z < 5.3 for each in answer.rows)
+
+    @pytest.mark.parametrize("z", [0.0, 3.0])
+    def test_a_crack_of_side_walls(self, z):
+        """The weakest angle about a level, against ten of them."""
+        house = building({**CROSSED, "gables": []})
+        search, wall = Search(house, site_of(SITE)), house.walls[2]
+        steepest = house.interlock.steepest
+        (angle,) = search.weakest(partial(overturning, house, wall, z), (0.0, steepest))
+        least = min(zeta(search, partial(overturning, house, wall, z, a)) for a in np.linspace(0, steepest, 10).tolist())
+        assert zeta(search, partial(overturning, house, wall, z, angle)) <= least * (1 + TOLERANCE)
+
+    @pytest.mark.parametrize(
+        ("bounds", "valley"),
+        [([(0.0, 3.0)], [1.234]), ([(0.0, 3.0)], [0.0]), ([(0.0, 3.0)], [3.0]),
+         ([(0.0, 3.0), (0.0, 0.5)], [1.9, 0.31]), ([(0.0, 3.0), (0.0, 0.5)], [0.0, 0.5])],
+    )  # fmt: skip
+    def test_a_valley(self, bounds, valley, monkeypatch):
+        """Of a made-up ratio with one least value within the bounds."""
+        search = Search(building(PLAIN), site_of(SITE))
+        widths = [high - low for low, high in bounds]
+        monkeypatch.setattr(Search, "ratio", lambda self, x: 1 + sum(((a - b) / w) ** 2 for a, b, w in x))
+        found = search.weakest(lambda *x: list(zip(x, valley, widths, strict=True)), *bounds)
+        assert sum(((a - b) / w) ** 2 for a, b, w in zip(found, valley, widths, strict=True)) < 2 * LOWER
+
+    @pytest.mark.rest
+    def test_all_of_a_small_building(self):
+        """Sixty heights a storey; twenty angles at twelve heights of walls that interlock."""
+        check({**CROSSED, "walls": [{**each, "connection": "none"} for each in CROSSED["walls"]]}, 60, 20)
+        check(CROSSED, 12, 20)
+
+    @pytest.mark.rest
+    @pytest.mark.parametrize("seed", range(12))
+    def test_random_buildings(self, seed):
+        check(random_house(seed), 12, 9)
