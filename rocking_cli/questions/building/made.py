@@ -248,6 +248,8 @@ def _sides(
         back = [[inner - min(y * slope, reach), y] for y in (head, bend, foot)]
         corners = [[_rounded(x), _rounded(y)] for x, y in ((inner, foot), (inner, head), *back)]
         distinct = [each for k, each in enumerate(corners) if each != corners[k - 1]]
+        if len(distinct) < 3:  # of a crack so steep that its wedge is no wider than a rounding
+            continue
         density = sum(thick * density for thick, density in along) / depth
         wedges.append({"polygon": distinct, "depth": depth, "density": density})
     rubbing = [(height, _thinnest(building, side, z), _density(building, side), reach) for height, side in crossing]

@@ -126,9 +126,11 @@ class Assessed:
 def floor_of(building: Building, site: SiteFile, z: float) -> SiteFile:
     """Return the site of what is shaken at a height above the foundation [m]: the ground, or the building's motion.
 
+    What stands at the foot of the building, on a plinth or not, moves with the ground.
+
     A `floor` of the site is used with this height; otherwise T1 is that of the building, and longer at SLV and SLC.
     """
-    if z <= 0:
+    if z <= max(0.0, building.levels[0]):
         return replace(site, site=site.site.model_copy(update={"floor": None}))
     fields, given = type(site.site).model_fields, getattr(site.site, "floor", None)
     if "floor" not in fields:

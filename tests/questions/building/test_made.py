@@ -591,7 +591,9 @@ class TestHeights:
         assert floor_of(self.HOUSE, site_of(SITE), z).site.floor == site_at(z).site.floor
 
     def test_the_foot_is_on_the_ground(self):
-        given = site_of({**yaml.safe_load(SITE.read_text()), "floor": {"z": 2.0, "H": 5.0, "n": 2, "T1": 0.3, "xi1": 0.1}})
+        given = site_of(
+            {**yaml.safe_load(SITE.read_text()), "floor": {"z": 2.0, "H": 5.0, "n": 2, "T1": 0.3, "xi1": 0.1}}
+        )
         assert floor_of(self.HOUSE, given, 0.0).site.floor is None
         assert floor_of(self.HOUSE, given, 9.0).site.floor.z == 5.0
 

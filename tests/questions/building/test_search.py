@@ -179,7 +179,9 @@ class TestLeast:
         search, wall = Search(house, site_of(SITE)), house.walls[2]
         steepest = house.interlock.steepest
         (angle,) = search.weakest(partial(overturning, house, wall, z), (0.0, steepest))
-        least = min(zeta(search, partial(overturning, house, wall, z, a)) for a in np.linspace(0, steepest, 10).tolist())
+        least = min(
+            zeta(search, partial(overturning, house, wall, z, a)) for a in np.linspace(0, steepest, 10).tolist()
+        )
         assert zeta(search, partial(overturning, house, wall, z, angle)) <= least * (1 + TOLERANCE)
 
     @pytest.mark.parametrize(
