@@ -1,7 +1,7 @@
 """The weakest mechanism of a building, against all of them: every height of a hinge, every angle of a crack."""
 
 from functools import partial
-from itertools import product
+from itertools import pairwise, product
 from math import inf, isnan
 
 import numpy as np
@@ -56,7 +56,7 @@ def everything(search, heights, angles):
             for z, angle, gable in product(hinges(low, high), cracks, gables):
                 yield (wall.name, round(z, 3), angle, gable), partial(overturning, house, wall, z, angle, gable=gable)
         levels = held_levels(house, wall)
-        for low, high in zip(levels, levels[1:], strict=False):
+        for low, high in pairwise(levels):
             yield (wall.name, "bending", low, high), partial(bending, house, wall, low, high)
     for each in (*house.gables, *house.parapets):
         foot = house.levels[house.wall[each.wall].reaches(house.count)[1]]
