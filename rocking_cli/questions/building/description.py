@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import pairwise
-from math import atan, degrees
+from math import atan, degrees, inf
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Literal
 
@@ -23,6 +23,7 @@ from rocking_cli.text import did_you_mean, in_short
 HINT = "`rocking new building` prints one to start from"
 USUAL_STOREY = (1.8, 12.0)  # m; other heights of a storey are asked about
 USUAL_THICKNESS = (0.08, 3.0)  # m
+MOST_COURSE = 1.0  # m, of height and overlap of courses
 MAX_WALLS = 500
 NAMING = ("name", "wall", "walls", "sides", "on", "source")  # fields with words of the user
 
@@ -78,6 +79,10 @@ class Courses(Part):
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
         """Check that the crack is not flatter than its joints allow."""
+        for key in ("course", "overlap"):
+            if sound(key) and given.get(key, 0) > MOST_COURSE:
+                guess = f": did you mean {given[key]:g} cm?" if given[key] / 100 <= MOST_COURSE else ""
+                yield (key,), f"is {given[key]:g} m, more than blocks of masonry have, {MOST_COURSE:g} m{guess}"
         angle = given.get("angle")
         if isinstance(angle, float | int) and all(sound(key) for key in ("course", "overlap", "angle")):
             most = degrees(atan(given["overlap"] / given["course"]))
@@ -212,10 +217,10 @@ class BellGable(OnTop):
         """Check that bells hang somewhere."""
         if (given.get("bells") is None) != (given.get("bells_height") is None):
             yield ("bells_height",), "bells have a mass and a height: give both"
-        for k, each in enumerate(given.get("openings") or ()):
-            end = each["z"] + each["height"] if sound("openings", k) and sound("height") else 0.0
-            if end > given["height"]:
-                yield ("openings", k), f"ends {end:g} m above the foot of a gable {given['height']:g} m high"
+        openings, height = given.get("openings"), given.get("height")
+        for k, each in enumerate(_list(openings) if sound("height") and height is not None else ()):
+            if sound("openings", k) and (end := each["z"] + each["height"]) > height:
+                yield ("openings", k), f"ends {end:g} m above the foot of a gable {height:g} m high"
 
 
 class WallCorner(Part):
@@ -278,7 +283,8 @@ class Building(Part):
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
         """Check that levels grow, and that walls, floors, ties and all else are where others need them."""
-        levels, walls, meant = given.get("levels"), given.get("walls"), given.get("unusual") or ()
+        levels, meant = given.get("levels"), given.get("unusual") or ()
+        walls: Any = given.get("walls")
         if not levels or not sound("levels"):
             return
         for k, (low, high) in enumerate(pairwise(levels), 1):
@@ -288,10 +294,10 @@ class Building(Part):
             if not USUAL_STOREY[0] <= high - low <= USUAL_STOREY[1] and "levels" not in meant:
                 guess = f"did you mean {high - low:g} cm? " if USUAL_STOREY[0] <= (high - low) / 100 <= 12 else ""
                 yield ("levels", k), f"makes storey {k} {high - low:g} m high: {guess}{_if_meant('levels')}"
-        if not isinstance(walls, list) or not all(isinstance(each, dict) and each.get("name") for each in walls):
+        if not all(isinstance(each, dict) and isinstance(each.get("name"), str) for each in _list(walls) or [None]):
             return
         strengths: Any = given.get("masonry") if isinstance(given.get("masonry"), dict) else {}
-        for k, each in enumerate(given.get("ties") or ()):
+        for k, each in enumerate(_list(given.get("ties"))):
             if isinstance(each, dict) and each.get("plate") and not {"compression", "shear"} <= {*strengths}:
                 yield ("ties", k, "plate"), "bears on masonry: give `compression` and `shear` of `masonry`"
         named = {each["name"]: each for each in walls}
@@ -305,6 +311,16 @@ class Building(Part):
         for place, message in _of_what_bears(given, named):
             if sound(*place):
                 yield place, message
+
+
+def _list(value: Any) -> list[Any]:
+    """Return a list that may be wrong or left out, then as an empty one."""
+    return value if isinstance(value, list) else []
+
+
+def _number(value: Any, otherwise: float = 0.0) -> float:
+    """Return a number that may be wrong or left out, then as another one."""
+    return value if isinstance(value, float | int) else otherwise
 
 
 def _if_meant(name: str) -> str:
@@ -355,15 +371,19 @@ def _of_wall(
             yield ("openings", k), f"ends {one['z'] + one['height']:g} m above the floor of a storey {high:g} m high"
         if any(one is not other and _overlap(one, other) for other in openings[:k]):
             yield ("openings", k), "overlaps another opening of the wall"
-    for k, each in enumerate(wall.get("sides") or []):
-        if each not in named or each == wall["name"]:
-            yield ("sides", k), f"there is no other wall called {each}: {_known(each, named)}"
+    others = {name: each for name, each in named.items() if name != wall["name"]}
+    for k, each in enumerate(sides := wall.get("sides") or []):
+        if each not in others:
+            yield ("sides", k), f"there is no other wall called {each}: {_known(each, others)}"
+        elif each in sides[:k]:
+            yield ("sides", k), f"is {each} again: name each wall that it meets once"
     if wall.get("connection") == "interlock":
         if not given.get("interlock"):
             yield ("connection",), "needs `interlock` of the building: height of courses and overlap of blocks"
         if not wall.get("sides"):
             yield ("connection",), "interlocks with no wall: name the walls at its ends in `sides`"
-    holds = [each for each in given.get("ties") or () if wall["name"] in (each.get("walls") or ())]
+    ties = [each for each in _list(given.get("ties")) if isinstance(each, dict)]
+    holds = [each for each in ties if wall["name"] in _list(each.get("walls"))]
     if wall.get("connection") == "ties" and not holds:
         yield ("connection",), "is by ties, but no tie of the file is on this wall: add it to the `walls` of a tie"
 
@@ -375,7 +395,7 @@ def _overlap(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
 
 
 def _known(name: str, named: Mapping[str, Any]) -> str:
-    return did_you_mean(name, list(named)) or f"walls are {in_short(list(named))}"
+    return did_you_mean(name, list(named)) or f"walls are {in_short(list(named)) or 'none'}"
 
 
 def _of_what_bears(given: Mapping[str, Any], named: Mapping[str, Any]) -> Iterator[tuple[Place, str]]:
@@ -386,7 +406,9 @@ def _of_what_bears(given: Mapping[str, Any], named: Mapping[str, Any]) -> Iterat
         if not 1 <= level <= count:
             yield (*place, "level"), f"must be from 1 to {count}, got {level}"
             return
-        for k, name in enumerate(part.get("walls") or ()):
+        for k, name in enumerate(_list(part.get("walls"))):
+            if not isinstance(name, str):
+                continue
             if name not in named:
                 yield (*place, "walls", k), f"there is no wall called {name}: {_known(name, named)}"
             elif not (reach := _reach(named[name], count))[0] < level <= reach[1]:
@@ -394,7 +416,7 @@ def _of_what_bears(given: Mapping[str, Any], named: Mapping[str, Any]) -> Iterat
                 yield (*place, "walls", k), what
 
     for key in ("floors", "ties"):
-        for k, each in enumerate(given.get(key) or ()):
+        for k, each in enumerate(_list(given.get(key))):
             if isinstance(each, dict) and isinstance(each.get("level"), int):
                 yield from on_walls((key, k), each, each["level"])
                 if key == "ties" and each["level"] <= count and isinstance(each.get("below"), float):
@@ -404,15 +426,21 @@ def _of_what_bears(given: Mapping[str, Any], named: Mapping[str, Any]) -> Iterat
     if isinstance(given.get("roof"), dict):
         yield from on_walls(("roof",), given["roof"], count)
     for key in ("gables", "parapets", "bell_gables"):
-        for k, each in enumerate(given.get(key) or ()):
-            if isinstance(each, dict) and (name := each.get("wall")) is not None and name not in named:
+        for k, each in enumerate(_list(given.get(key))):
+            if not isinstance(each, dict) or not isinstance(name := each.get("wall"), str):
+                continue
+            if name not in named:
                 yield (key, k, "wall"), f"there is no wall below called {name}: {_known(name, named)}"
-            elif isinstance(each, dict) and each.get("length") and each["length"] > named[each["wall"]]["length"]:
-                yield (key, k, "length"), f"is more than that of the wall, {named[each['wall']]['length']:g} m"
-    for k, each in enumerate(given.get("corners") or ()):
-        for m, name in enumerate(each.get("walls") or () if isinstance(each, dict) else ()):
+            elif _number(each.get("length")) > _number(named[name].get("length"), inf):
+                yield (key, k, "length"), f"is more than that of the wall, {named[name]['length']:g} m"
+    for k, each in enumerate(_list(given.get("corners"))):
+        for m, name in enumerate(_list(each.get("walls")) if isinstance(each, dict) else ()):
+            if not isinstance(name, str):
+                continue
             if name not in named:
                 yield ("corners", k, "walls", m), f"there is no wall called {name}: {_known(name, named)}"
+            elif name in each["walls"][:m]:
+                yield ("corners", k, "walls", m), f"is {name} again: a corner is of two walls"
         if not given.get("interlock"):
             yield ("corners", k), "needs `interlock` of the building: without it the walls overturn each for itself"
 
@@ -453,19 +481,26 @@ def _in_english(document: Document) -> None:
     """Give the fields of a file, and words that are values of fields, their English names."""
     fields, words = italian()["building"], italian()["building_words"]
 
-    def of(value: Any) -> Any:
+    def of(value: Any, place: Place = ()) -> Any:
         if isinstance(value, dict):
-            named = {fields.get(key, key): each for key, each in value.items()}
-            return {key: each if key in NAMING and not _has_parts(each) else of(each) for key, each in named.items()}
+            english: dict[Any, Any] = {}
+            for key, each in value.items():
+                if (name := fields.get(key, key)) in english:
+                    document.problems.append(document.at((*place, key), f"is {name}, which is given too", key=True))
+                english[name] = each if name in NAMING and not _has_parts(each) else of(each, (*place, key))
+            return english
         if isinstance(value, list):
-            return [of(each) for each in value]
-        english = words.get(value, value) if isinstance(value, str) else value
-        return {"true": True, "false": False}.get(english, english) if isinstance(english, str) else english
+            return [of(each, (*place, k)) for k, each in enumerate(value)]
+        word = words.get(value, value) if isinstance(value, str) else value
+        return {"true": True, "false": False}.get(word, word) if isinstance(word, str) else word
 
     document.data = of(document.data)
     for marks in (document.keys, document.values):
-        for place in [*marks]:
-            marks[tuple(fields.get(part, part) if isinstance(part, str) else part for part in place)] = marks[place]
+        renamed = {
+            tuple(fields.get(each, each) if isinstance(each, str) else each for each in at): marks[at] for at in marks
+        }
+        marks.clear()
+        marks.update(renamed)
 
 
 def _has_parts(value: Any) -> bool:

@@ -25,6 +25,7 @@ from rocking_cli.questions.building.description import (
     BellGable,
     Building,
     BuildingTie,
+    Courses,
     Gable,
     Hole,
     OnTop,
@@ -32,7 +33,7 @@ from rocking_cli.questions.building.description import (
 )
 from rocking_cli.studies.remark import Remark
 
-STRIPS = 6  # of a gable, each with its mean length: the mass is exact, the centroid 1.4 % too low
+STRIPS = 6  # of a gable, each with its mean length: the mass is exact, the centroid 1.4 % too high
 ARCH_STRESS, ARCH_DEPTH, ARCH_RISE = 1.5, 0.1, 0.9  # of a wall that bends as an arch [EN 1996-1-1, 6.3.2]
 MOST_SLENDER_ARCH = 20.0  # length over thickness
 MOST_ARCH_RATIO = 0.57  # g, as one rigid body of the inertia of two has at most 1/sqrt(3) as its ratio at rest
@@ -239,38 +240,75 @@ def _sides(
     courses = building.interlock
     if wall.connection != "interlock" or courses is None:
         return [], None
-    crossing = list[tuple[float, float, float]]()  # height above the hinge, thickness, density
-    reach = courses.reach or inf
+    crossing = list[tuple[float, Wall]]()  # height above the hinge
+    thickness, slope, reach = wall.thick(_storey(building, wall, z)), tan(angle), courses.reach or inf
     for side in map(building.wall.__getitem__, wall.sides):
         low, top = side.reaches(building.count)
         height = min(building.levels[top], high) - z
         if height > 0 and building.levels[low] <= z:
-            crossing.append((height, side.thick(_storey(building, side, z)), side.density or building.masonry.density))
-            reach = min(reach, side.length)
-    inner, slope, wedges = -wall.thick(_storey(building, wall, z)) / 2, tan(angle), list[dict[str, Any]]()
-    for foot, head in pairwise(sorted({0.0, *(height for height, _, _ in crossing)})) if slope else ():
-        along = [(thick, density) for height, thick, density in crossing if height >= head]
+            crossing.append((height, side))
+            reach = min(reach, max(side.length - thickness, 0.0))
+    inner, wedges = -thickness / 2, list[dict[str, Any]]()
+    cuts = {0.0, *(height for height, _ in crossing)} | {y for _, side in crossing for y in _steps(building, side, z)}
+    for foot, head in pairwise(sorted(cuts)) if slope and reach else ():
+        sides = [side for height, side in crossing if height >= head]
+        along = [(side.thick(_storey(building, side, z + foot)), _density(building, side)) for side in sides]
         depth = sum(thick for thick, _ in along)
         bend = min(max(reach / slope, foot), head)  # above it the side walls have no more
         back = [[inner - min(y * slope, reach), y] for y in (head, bend, foot)]
         corners = [[_rounded(x), _rounded(y)] for x, y in ((inner, foot), (inner, head), *back)]
         distinct = [each for k, each in enumerate(corners) if each != corners[k - 1]]
+        if len(distinct) < 3:  # of a crack so steep that its wedge is no wider than a rounding
+            continue
         density = sum(thick * density for thick, density in along) / depth
         wedges.append({"polygon": distinct, "depth": depth, "density": density})
+    rubbing = [(height, _thinnest(building, side, z), _density(building, side), reach) for height, side in crossing]
+    return wedges, _friction(building, courses, slope, rubbing)
+
+
+def _density(building: Building, wall: Wall) -> float:
+    return wall.density or building.masonry.density
+
+
+def _steps(building: Building, wall: Wall, z: float) -> set[float]:
+    """Return the heights above a hinge at which a wall may change its thickness [m]."""
+    top = building.levels[wall.reaches(building.count)[1]]
+    return {y - z for y in building.levels if z < y < top} if isinstance(wall.thickness, list) else set()
+
+
+def _thinnest(building: Building, wall: Wall, z: float) -> float:
+    """Return the least thickness of a wall above a hinge [m], on which less weight rubs than on others."""
+    return min(wall.thick(each) for each in range(_storey(building, wall, z), wall.reaches(building.count)[1] + 1))
+
+
+def _friction(
+    building: Building, courses: Courses, slope: float, walls: Sequence[tuple[float, float, float, float]]
+) -> dict[str, Any] | None:
+    """Return the friction of courses of walls, each of a height, thickness, density, and reach, on a crack of a slope.
+
+    They are given as equal ones of the height of the highest, with the moment about the hinge that they have together.
+    A wall rubs up to where the crack has run through its reach: in the lowest share b of its height is the share
+    3 b^2 - 2 b^3 of the moment, as the weight grows with the depth below the top.
+    """
     left = courses.overlap - courses.course * slope
-    rows = int(round((high - z) / courses.course, 6))
-    if not crossing or left <= LEAST_OVERLAP * courses.overlap or rows < 1:
-        return wedges, None
-    thickness = sum(thick for _, thick, _ in crossing) / len(crossing)
-    friction = {"courses": rows, "overlap": round(left, 6), "thickness": thickness, "walls": len(crossing),
-                "friction": courses.friction, "height": _rounded(rows * courses.course),
-                "density": building.masonry.density}  # fmt: skip
-    return wedges, friction
+    rows = [int(round(height / courses.course, 6)) for height, *_ in walls]
+    if left <= LEAST_OVERLAP * courses.overlap or not any(rows):
+        return None
+    most, density, thickness = max(rows), building.masonry.density, 0.0
+    for n, (height, thick, weighs, reach) in zip(rows, walls, strict=True):
+        b = min(1.0, reach / (slope * height)) if slope else 1.0
+        share = n**2 * (n + 1) / (most**2 * (most + 1)) * b**2 * (3 - 2 * b)
+        thickness += thick * weighs / density * share / len(walls)
+    if thickness <= LEAST_OVERLAP * max(thick for _, thick, *_ in walls):
+        return None
+    return {"courses": most, "overlap": round(left, 6), "thickness": thickness, "walls": len(walls),
+            "friction": courses.friction, "height": _rounded(most * courses.course), "density": density}  # fmt: skip
 
 
 def _storey(building: Building, wall: Wall, z: float) -> int:
-    """Return the storey of a wall at and above a height; below it its first."""
-    return max(wall.reaches(building.count)[0] + 1, bisect_right(building.levels, z))
+    """Return the storey of a wall at and above a height; below it its first, above it its last."""
+    foot, top = wall.reaches(building.count)
+    return min(max(foot + 1, bisect_right(building.levels, z)), top)
 
 
 def overturning(building: Building, wall: Wall, z: float, angle: float | None = None, *, gable: bool = True) -> Made:
@@ -306,9 +344,41 @@ def overturning(building: Building, wall: Wall, z: float, angle: float | None = 
     held = friction is not None or bool(wedges)
     name = f"{wall.name}: overturning{'' if gable else ' without its gable'} about {z:.4g} m"
     hinge = z, max(each.high for each in parts)
+    if wedges:
+        fields = _by_its_numbers(fields, outer)
     return Made(
         "overturning", wall.name, name, z, hinge, kind, fields, crack if held else None, without_gable=not gable
     )
+
+
+def _by_its_numbers(fields: dict[str, Any], outer: float) -> dict[str, Any]:
+    """Return the fields of a wall whose wedges have its centroid behind its foot: it leans on the building at rest.
+
+    A body by its parts must stand on its foot; one by its numbers has a left foot as far behind as the wedges go.
+    """
+    plates = [[complex(*corner) for corner in each["polygon"]] for each in fields["parts"]]
+    weighs = [each.get("density", fields["density"]) * each["depth"] for each in fields["parts"]]
+    masses = [_area(corners) * each for corners, each in zip(plates, weighs, strict=True)]
+    bodies = [polygon("part", 1.0, corners) for corners in plates]
+    whole = sum(masses)
+    centroid = sum(mass * each.centroid for mass, each in zip(masses, bodies, strict=True)) / whole
+    if centroid.real > min(each.real for each in plates[0]):
+        return fields
+    inertia = sum(m * (b.inertia + abs(b.centroid - centroid) ** 2) for m, b in zip(masses, bodies, strict=True))
+    top, behind = max(each.imag for each in plates[0]), min(each.real for corners in plates for each in corners)
+    high = max(each.imag for corners in plates for each in corners)
+    numbers: dict[str, Any] = {
+        "mass": round(whole, 3), "inertia": round(inertia, 3),
+        "centroid": [_rounded(centroid.real), _rounded(centroid.imag)],
+        "left_foot": [behind, 0.0], "right_foot": [_rounded(outer), 0.0], "depth": fields["depth"],
+        "polygon": [[plates[0][0].real, 0.0], [outer, 0.0], [outer, max(top, high)], [behind, high]],
+    }  # fmt: skip
+    return numbers | {key: value for key, value in fields.items() if key not in ("parts", "density", "depth")}
+
+
+def _area(corners: Sequence[complex]) -> float:
+    """Return the area within corners in order."""
+    return abs(sum((p.conjugate() * q).imag for p, q in pairwise([*corners, corners[0]]))) / 2
 
 
 def _given_angle(building: Building) -> float:
@@ -482,24 +552,30 @@ def corner(building: Building, k: int, z: float, angle: float) -> Made:
     assert courses is not None  # a corner without interlock was refused
     top = min(building.levels[each.reaches(building.count)[1]] for each in walls)
     height, slope = top - z, tan(angle)
+    densities = [_density(building, each) for each in walls]
     a, b = (each.thick(_storey(building, each, z)) for each in walls)
-    densities = [each.density or building.masonry.density for each in walls]
+    reaches = [max(min(each.length - t, courses.reach or inf), 0.0) for each, t in zip(walls, (b, a), strict=True)]
     size = (a + b) / sqrt(2)
-    mass = a * b * height * sum(densities) / 2
-    pieces = [(mass, complex(-size / 2, height / 2), mass * ((a**2 + b**2) / 24 + height**2 / 12))]
-    loads, furthest = list[dict[str, Any]](), size
-    for wall, t, other, density in zip(walls, (a, b), (b, a), densities, strict=True):
-        reach = min(wall.length, courses.reach or wall.length) - other
-        if slope and reach > 0:
-            corners = [0j, complex(0, height), complex(-min(height * slope, reach), height)]
-            corners += [complex(-reach, reach / slope)] * (height * slope > reach)
-            wedge = polygon("wedge", 1.0, [complex(each.real / sqrt(2), each.imag) for each in corners])
-            mass = density * t * abs(sum((p.conjugate() * q).imag for p, q in pairwise([*corners, corners[0]]))) / 2
-            centroid = wedge.centroid - (other + t / 2) / sqrt(2)
-            pieces.append((mass, centroid, mass * (wedge.inertia + t**2 / 24)))
-            furthest = max(furthest, (other + t + min(height * slope, reach)) / sqrt(2))
+    steps = {y for each in walls for y in _steps(building, each, z) if y < height}
+    pieces = list[tuple[float, complex, float]]()
+    for foot, head in pairwise(sorted({0.0, height, *steps})):
+        c, d = (each.thick(_storey(building, each, z + foot)) for each in walls)
+        mass, at = c * d * (head - foot) * sum(densities) / 2, complex(-(c + d) / sqrt(8), (foot + head) / 2)
+        pieces.append((mass, at, mass * ((c**2 + d**2) / 24 + (head - foot) ** 2 / 12)))
+        for t, other, start, density, reach in zip((c, d), (d, c), (b, a), densities, reaches, strict=True):
+            if slope and reach:
+                bend = min(max(reach / slope, foot), head)
+                back = [complex(other - start - min(y * slope, reach), y) for y in (head, bend, foot)]
+                corners = [complex(0, foot), complex(0, head), *back]
+                corners = [each for m, each in enumerate(corners) if each != corners[m - 1]]
+                wedge = polygon("wedge", 1.0, [complex(each.real / sqrt(2), each.imag) for each in corners])
+                mass, at = density * t * _area(corners), wedge.centroid - (other + t / 2) / sqrt(2)
+                pieces.append((mass, at, mass * (wedge.inertia + t**2 / 24)))
+    loads = list[dict[str, Any]]()
+    furthest = size + max(min(height * slope, each) for each in reaches) / sqrt(2)
+    for wall, other, reach in zip(walls, (b, a), reaches, strict=True):
         for name, level, each in _seats(building, wall, z):
-            along = other + max(min((level - z) * slope, reach), 0.0)
+            along, t = other + min((level - z) * slope, reach), -_inner(building, wall, level, 0.0)
             x = -(along / 2 + t - (each.seat / 3 if each.seat is not None else t / 2)) / sqrt(2)
             place = [_rounded(x), _rounded(level - z)]
             load = {"name": f"{name} on {wall.name}", "mass": round(each.load * each.span * along, 3), "at": place}
@@ -517,16 +593,14 @@ def corner(building: Building, k: int, z: float, angle: float) -> Made:
     fields: dict[str, Any] = {
         "mass": round(whole, 3), "inertia": round(inertia, 3),
         "centroid": [_rounded(centroid.real), _rounded(centroid.imag)],
-        "left_foot": [_rounded(-size), 0.0], "right_foot": [0.0, 0.0],
+        "left_foot": [_rounded(-size if centroid.real > -size else -furthest), 0.0], "right_foot": [0.0, 0.0],
         "polygon": [[_rounded(x), _rounded(y)] for x, y in ((-size, 0), (0, 0), (0, height), (-furthest, height))],
         "one_sided": "positive",
     }  # fmt: skip
-    left, rows = courses.overlap - courses.course * slope, int(round(height / courses.course, 6))
-    if left > LEAST_OVERLAP * courses.overlap and rows >= 1:
-        fields["interlock"] = {
-            "courses": rows, "overlap": round(left, 6), "thickness": (a + b) / 2, "walls": 2,
-            "friction": courses.friction, "height": _rounded(rows * courses.course), "density": sum(densities) / 2,
-        }  # fmt: skip
+    thin = [_thinnest(building, each, z) for each in walls]
+    rubbing = [(height, *each) for each in zip(thin, densities, reaches, strict=True)]
+    if (friction := _friction(building, courses, slope, rubbing)) is not None:
+        fields["interlock"] = friction
     fields |= {key: value for key, value in (
         ("loads", loads), ("rebound", building.rebound), ("unusual", building.unusual),
     ) if value}  # fmt: skip

@@ -26,11 +26,13 @@ from rocking_cli.verification.code import SiteFile
 from rocking_cli.verification.results import Histories, Verification
 
 COARSE, REFINED = 4, 8  # intervals of a search in which the least is looked for, and evaluations in the best of them
+SEARCHED = 32  # evaluations of a search by two arguments
 PERIOD_FACTOR = 0.05  # C1 of T1 = C1 H^(3/4), H in m
 LENGTHENED, DAMPING, LATER_DAMPING = 1.75, 0.05, 0.10  # T1 at SLV over that at SLD, and damping ratios
 LEAST_REST = 0.05  # share of the last storey above the highest hinge that is tried
 LEAST_GABLE = 0.2  # the same of a gable
 LEVEL_HEIGHT = 0.01  # m; a weakest hinge this near a level is that of the level
+FAR_ABOVE = 10.0  # times the least ratio of a grid; a search has any larger one as this
 LOWER = 1e-3  # share by which a hinge between levels must be weaker to be listed beside them
 
 
@@ -125,9 +127,11 @@ class Assessed:
 def floor_of(building: Building, site: SiteFile, z: float) -> SiteFile:
     """Return the site of what is shaken at a height above the foundation [m]: the ground, or the building's motion.
 
+    What stands at the foot of the building, on a plinth or not, moves with the ground.
+
     A `floor` of the site is used with this height; otherwise T1 is that of the building, and longer at SLV and SLC.
     """
-    if z <= 0:
+    if z <= max(0.0, building.levels[0]):
         return replace(site, site=site.site.model_copy(update={"floor": None}))
     fields, given = type(site.site).model_fields, getattr(site.site, "floor", None)
     if "floor" not in fields:
@@ -160,12 +164,15 @@ class Search:
         structure = Structure(made.structure())
         return Found(made, structure, verify(structure, floor_of(self.building, self.site, made.z)))
 
-    def tried(self, made: Made) -> Found | None:
-        """Return a mechanism with its verification; None if it cannot be verified."""
+    def ratio(self, made: Made) -> float:
+        """Return capacity over demand of a mechanism: none if it falls at rest; infinite if it cannot be verified."""
         try:
-            return self.verified(made)
-        except (InputError, MechanismError, SolverError):
-            return None
+            ratio = self.verified(made).ratio
+        except InputError as error:
+            return 0.0 if any(each.field in ("loads", "ties") for each in error.problems) else inf
+        except (MechanismError, SolverError):
+            return inf
+        return inf if isnan(ratio) else ratio
 
     def weakest(
         self, make: Callable[..., Made], *bounds: tuple[float, float], known: float | None = None
@@ -179,18 +186,21 @@ class Search:
 
         def at(*arguments: float) -> float:
             try:
-                each = self.tried(make(*arguments))
+                return self.ratio(make(*arguments))
             except NotMade:
                 return inf
-            return inf if each is None or isnan(each.ratio) else each.ratio
 
         axes = [np.linspace(*each, COARSE + 1).tolist() for each in bounds]
         values = {place: at(*place) for place in [*product(*axes)][known is not None :]}
         if known is not None:  # at the lower ends
             values[tuple(low for low, _ in bounds)] = known
         best = min(values, key=lambda place: (float(f"{values[place]:.9g}"), place))
-        if values[best] == inf:
+        if values[best] in (0.0, inf):
             return best
+
+        def bounded(*arguments: float) -> float:
+            return min(at(*arguments), FAR_ABOVE * values[best])  # an infinite value has no parabola
+
         if len(bounds) == 1:
             (x,), ((low, high),) = best, bounds
             step = (high - low) / COARSE
@@ -200,11 +210,15 @@ class Search:
                     return best
             ends = max(low, x - step), min(high, x + step)
             stops = {"maxiter": REFINED, "xatol": 0.01 * step}
-            found = minimize_scalar(at, bounds=ends, method="bounded", options=stops)
+            found = minimize_scalar(bounded, bounds=ends, method="bounded", options=stops)
             refined: tuple[float, ...] = (float(found.x),)
         else:
-            stops = {"maxfev": REFINED * len(bounds), "xatol": 1e-3, "fatol": 1e-4}
-            found = minimize(lambda x: at(*x), best, method="Nelder-Mead", bounds=bounds, options=stops)
+            corners = [best]  # a first simplex half a cell wide, into the bounds
+            for k, (x, (low, high)) in enumerate(zip(best, bounds, strict=True)):
+                step = (high - low) / COARSE / 2 * (1 if x < (low + high) / 2 else -1)
+                corners.append((*best[:k], x + step, *best[k + 1 :]))
+            simplex: Any = {"maxfev": SEARCHED, "xatol": 1e-3, "fatol": 1e-4, "initial_simplex": corners}
+            found = minimize(lambda x: bounded(*x), best, method="Nelder-Mead", bounds=bounds, options=simplex)
             refined = tuple(map(float, found.x))
         return refined if float(found.fun) < values[best] * (1 - LOWER) else best
 
@@ -237,9 +251,8 @@ class Search:
         z, *angle = self.weakest(about, (low, end), *crack, known=known)
         z = round(z, 3)
         between = z > low + LEVEL_HEIGHT and (z < high - LEVEL_HEIGHT or (is_last and not has_gable))
-        if between and (lower := self.tried(about(z, *angle))) is not None:
-            if of_level is None or lower.ratio < (1 - LOWER) * of_level.ratio:
-                yield lower
+        if between and (of_level is None or self.ratio(about(z, *angle)) < (1 - LOWER) * of_level.ratio):
+            yield from self._one(partial(about, z, *angle))
 
     def of_others(self) -> Iterator[Found | LeftOutMechanism]:
         """Yield the mechanisms of what stands on walls, and of corners."""

@@ -1,0 +1,209 @@
+"""The weakest mechanism of a building, against all of them: every height of a hinge, every angle of a crack."""
+
+from functools import partial
+from itertools import pairwise, product
+from math import inf, isnan
+
+import numpy as np
+import pytest
+
+from rocking_cli.ask.inputs import site_of
+from rocking_cli.errors import InputError, MechanismError, SolverError
+from rocking_cli.io.json_text import json_text
+from rocking_cli.io.yaml_file import parse
+from rocking_cli.questions.building.description import building_of
+from rocking_cli.questions.building.made import NotMade, bending, corner, held_levels, overturning, standing
+from rocking_cli.questions.building.study import LOWER, Search, assess
+from tests.conftest import EXAMPLES
+
+TOLERANCE = LOWER + 1e-3  # of the search, and of heights that it rounds to millimetres
+SITE = EXAMPLES / "verify" / "site.yaml"
+
+
+def building(fields):
+    return building_of(parse(json_text(fields), "house.yaml", "building", "a hint"))
+
+
+def zeta(search, make):
+    """Capacity over demand, as one mechanism made and verified has it; infinite where there is none."""
+    try:
+        ratio = search.verified(make()).ratio
+    except (NotMade, InputError, MechanismError, SolverError):
+        return inf
+    return inf if isnan(ratio) else ratio
+
+
+def everything(search, heights, angles):
+    """Yield every mechanism of a building that could be meant, without any search: what it is, and its ratio.
+
+    Hinges are at each level and at `heights` places within each storey, cracks at `angles` slopes.
+    """
+    house = search.building
+    courses = house.interlock
+    slopes = np.linspace(0.0, courses.steepest, angles).tolist() if courses is not None else [0.0]
+
+    def hinges(low, high):
+        return [low, *np.linspace(low, high, heights + 1, endpoint=False)[1:].tolist()]
+
+    for wall in house.walls:
+        foot, top = wall.reaches(house.count)
+        gables = (True, False) if any(each.wall == wall.name for each in house.gables) else (True,)
+        cracks = slopes if wall.connection == "interlock" else [0.0]
+        for level in range(foot, top):
+            low, high = house.levels[level : level + 2]
+            if level + 1 == top and len(gables) == 1:
+                high -= 0.05 * (high - low)
+            for z, angle, gable in product(hinges(low, high), cracks, gables):
+                yield (wall.name, round(z, 3), angle, gable), partial(overturning, house, wall, z, angle, gable=gable)
+        levels = held_levels(house, wall)
+        for low, high in pairwise(levels):
+            yield (wall.name, "bending", low, high), partial(bending, house, wall, low, high)
+    for each in (*house.gables, *house.parapets):
+        foot = house.levels[house.wall[each.wall].reaches(house.count)[1]]
+        tall = 0.8 * each.height if each in house.gables else 0.0
+        for z in [foot, *np.linspace(foot, foot + tall, heights + 1)[1:].tolist()] if tall else [foot]:
+            yield (f"on {each.wall}", round(z, 3)), partial(standing, house, each, z if z > foot else None)
+    for k, each in enumerate(house.corners):
+        feet = [house.wall[name].reaches(house.count) for name in each.walls]
+        for level in range(max(foot for foot, _ in feet), min(top for _, top in feet)):
+            for angle in slopes:
+                yield (f"corner {k}", level, angle), partial(corner, house, k, house.levels[level], angle)
+
+
+def least_of_all(search, heights, angles):
+    """Return the least ratio of all mechanisms, and the mechanism that has it."""
+    return min((zeta(search, make), str(what)) for what, make in everything(search, heights, angles))
+
+
+def random_house(seed):
+    """Return the fields of a house of one or two storeys whose numbers are drawn, with all that changes a search."""
+    r = np.random.default_rng(seed)
+
+    def some(*values):
+        return values[int(r.integers(len(values)))]
+
+    def between(low, high):
+        return round(float(r.uniform(low, high)), 2)
+
+    storeys = some(1, 2, 2)
+    levels = [0.0, *np.cumsum([between(2.8, 4.0) for _ in range(storeys)]).round(2).tolist()]
+    thick = [between(0.3, 0.7) for _ in range(storeys)]
+    first = {"name": "front", "length": between(4, 9), "thickness": sorted(thick, reverse=True), "sides": ["left"]}
+    if r.random() < 0.6:
+        first["connection"] = "interlock"
+    if r.random() < 0.5:
+        high = between(1.0, 2.2)
+        first["openings"] = [{"storey": 1, "x": 1.0, "z": between(0, 0.5), "width": between(0.8, 2), "height": high}]
+    walls = [first, {"name": "left", "length": between(3, 8), "thickness": between(0.3, 0.6), "sides": ["front"]}]
+    if r.random() < 0.4:
+        walls[1]["connection"] = "interlock"
+    fields = {
+        "levels": levels, "masonry": {"density": 1800.0, "compression": 1.5e6, "shear": 5e4},
+        "interlock": {"course": between(0.12, 0.3), "overlap": between(0.08, 0.3)}, "walls": walls,
+    }  # fmt: skip
+    if r.random() < 0.3:
+        fields["interlock"]["reach"] = between(0.5, 2.5)
+    if r.random() < 0.7:
+        fields["roof"] = {"load": between(100, 300), "span": between(3, 6), "walls": ["front"]}
+        fields["roof"] |= {"sliding": some(True, False), "thrust": some(0.0, 800.0)}
+        if r.random() < 0.6:
+            fields["roof"]["seat"] = between(0.1, 0.25)
+    if storeys == 2 and r.random() < 0.7:
+        floor = {"name": "floor", "level": 1, "load": between(300, 500), "span": between(3, 6), "walls": ["front"]}
+        fields["floors"] = [floor | {"sliding": some(True, False), "seat": 0.15}]
+    if r.random() < 0.5:
+        fields["gables"] = [{"wall": some("front", "left"), "height": between(1.0, 2.5)}]
+    if r.random() < 0.4:
+        fields["ties"] = [{"level": storeys, "walls": ["front"], "length": 5.0, "bars": some(1, 2),
+                           "diameter": some(0.014, 0.02), "steel": "S235", "below": some(0.0, 0.3)}]  # fmt: skip
+    if r.random() < 0.5:
+        fields["corners"] = [{"walls": ["front", "left"]}]
+    if r.random() < 0.4:
+        fields["masonry"]["crushing"] = 1.5e6
+    return fields
+
+
+def check(fields, heights, angles):
+    """Assert that no mechanism is weaker than the weakest that is named; return all that was found."""
+    house = building(fields)
+    search = Search(house, site_of(SITE))
+    answer = assess(house, search.site)
+    least, what = least_of_all(search, heights, angles)
+    weakest = min(answer.rows, key=lambda each: each.ratio)
+    assert weakest.ratio <= least * (1 + TOLERANCE), f"{weakest.made.name} at {weakest.ratio}, but {what} at {least}"
+    return answer, what
+
+
+MASONRY = {"density": 1800.0}
+PLAIN = {
+    "levels": [0.0, 3.2], "masonry": MASONRY,
+    "walls": [{"name": "front", "length": 7.0, "thickness": 0.4, "openings": [
+        {"storey": 1, "x": 1.0, "z": 1.0, "width": 5.0, "height": 1.5}]}],
+    "roof": {"load": 200.0, "span": 5.0, "walls": ["front"], "sliding": True, "thrust": 700.0},
+}  # fmt: skip
+TIED = {
+    "levels": [0.0, 3.2, 6.4], "masonry": MASONRY, "walls": [{"name": "front", "length": 7.0, "thickness": 0.4}],
+    "roof": {"load": 200.0, "span": 5.0, "walls": ["front"], "sliding": True},
+    "ties": [{"level": 2, "walls": ["front"], "length": 6.0, "bars": 1, "diameter": 0.014, "steel": "S235"}],
+}  # fmt: skip
+CROSSED = {
+    "levels": [0.0, 3.0, 6.0], "masonry": MASONRY, "interlock": {"course": 0.2, "overlap": 0.1},
+    "walls": [
+        {"name": "front", "length": 7.0, "thickness": 0.5, "sides": ["left", "right"], "connection": "interlock"},
+        {"name": "left", "length": 6.0, "thickness": 0.4, "sides": ["front"]},
+        {"name": "right", "length": 6.0, "thickness": [0.5, 0.4], "sides": ["front"], "connection": "interlock"},
+    ],
+    "floors": [{"name": "deck", "level": 1, "load": 400.0, "span": 4.0, "walls": ["left", "right"], "seat": 0.15}],
+    "roof": {"load": 200.0, "span": 5.0, "walls": ["front"], "sliding": True, "thrust": 600.0},
+    "gables": [{"wall": "left", "height": 1.5}, {"wall": "right", "height": 1.5}],
+    "corners": [{"walls": ["front", "left"]}],
+}  # fmt: skip
+
+
+class TestLeast:
+    def test_a_hinge_at_the_sill_of_a_wide_window(self):
+        """Above the sill there is little weight against the thrust of the roof."""
+        answer, what = check(PLAIN, 8, 1)
+        assert "front" in what
+        assert answer.governs.made.z == pytest.approx(1.0, abs=0.02)
+
+    @pytest.mark.rest
+    def test_a_hinge_below_a_tie(self):
+        answer, _ = check(TIED, 16, 1)
+        assert any(4.8 < each.made.z < 5.3 for each in answer.rows)
+
+    @pytest.mark.parametrize("z", [0.0, 3.0])
+    def test_a_crack_of_side_walls(self, z):
+        """The weakest angle about a level, against ten of them."""
+        house = building({**CROSSED, "gables": []})
+        search, wall = Search(house, site_of(SITE)), house.walls[2]
+        steepest = house.interlock.steepest
+        (angle,) = search.weakest(partial(overturning, house, wall, z), (0.0, steepest))
+        least = min(
+            zeta(search, partial(overturning, house, wall, z, a)) for a in np.linspace(0, steepest, 10).tolist()
+        )
+        assert zeta(search, partial(overturning, house, wall, z, angle)) <= least * (1 + TOLERANCE)
+
+    @pytest.mark.parametrize(
+        ("bounds", "valley"),
+        [([(0.0, 3.0)], [1.234]), ([(0.0, 3.0)], [0.0]), ([(0.0, 3.0)], [3.0]),
+         ([(0.0, 3.0), (0.0, 0.5)], [1.9, 0.31]), ([(0.0, 3.0), (0.0, 0.5)], [0.0, 0.5])],
+    )  # fmt: skip
+    def test_a_valley(self, bounds, valley, monkeypatch):
+        """Of a made-up ratio with one least value within the bounds."""
+        search = Search(building(PLAIN), site_of(SITE))
+        widths = [high - low for low, high in bounds]
+        monkeypatch.setattr(Search, "ratio", lambda self, x: 1 + sum(((a - b) / w) ** 2 for a, b, w in x))
+        found = search.weakest(lambda *x: list(zip(x, valley, widths, strict=True)), *bounds)
+        assert sum(((a - b) / w) ** 2 for a, b, w in zip(found, valley, widths, strict=True)) < 2 * LOWER
+
+    @pytest.mark.rest
+    def test_all_of_a_small_building(self):
+        """Sixty heights a storey; twenty angles at twelve heights of walls that interlock."""
+        check({**CROSSED, "walls": [{**each, "connection": "none"} for each in CROSSED["walls"]]}, 60, 20)
+        check(CROSSED, 12, 20)
+
+    @pytest.mark.rest
+    @pytest.mark.parametrize("seed", range(12))
+    def test_random_buildings(self, seed):
+        check(random_house(seed), 12, 9)
