@@ -152,8 +152,8 @@ def _draw_mechanisms(axes: Axes, wall: Wall, rows: Sequence[tuple[int, Found]]) 
             at += 0.045 * span
         taken.append(at)
         text = f"{rank}: {number(row.ratio, 3)}"
-        axes.text(1.02 * wall.length, at, text, fontsize=style.TICK if k == 0 else style.SMALL, color=colour, va="center",
-                  fontweight="bold" if k == 0 else "normal", path_effects=style.HALO, zorder=6)  # fmt: skip
+        bold: dict[str, Any] = {"fontsize": style.TICK, "fontweight": "bold"} if k == 0 else {"fontsize": style.SMALL}
+        axes.text(1.02 * wall.length, at, text, color=colour, va="center", path_effects=style.HALO, zorder=6, **bold)
 
 
 def _draw_section(axes: Axes, building: Building, wall: Wall, say: Say) -> None:
@@ -178,8 +178,9 @@ def _draw_section(axes: Axes, building: Building, wall: Wall, say: Say) -> None:
             inner - 0.1, z + 0.1, text, fontsize=style.SMALL, color=style.INK, va="bottom", ha="right", parse_math=False
         )
         if each.thrust:
+            arrow = {"arrowstyle": "<-", "color": style.EXCEEDED}
             axes.annotate(f"{each.thrust / 1e3:g} kN/m", (outer + 0.1, z), (outer + 1.2, z), fontsize=style.SMALL,
-                          color=style.EXCEEDED, va="center", arrowprops={"arrowstyle": "<-", "color": style.EXCEEDED})  # fmt: skip
+                          color=style.EXCEEDED, va="center", arrowprops=arrow)  # fmt: skip
     for tie in building.ties:
         if wall.name in tie.walls:
             z = tie_height(building, tie)
