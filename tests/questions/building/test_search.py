@@ -185,7 +185,7 @@ class TestLeast:
         assert zeta(search, partial(overturning, house, wall, z, angle)) <= least * (1 + TOLERANCE)
 
     def test_the_angle_from_which_on_courses_slip_off(self):
-        """Of this wall the ratio drops from 1.26 to 1.16 at 0.27 rad, and grows on both sides; at 0.09 it is 1.23."""
+        """Of this wall the ratio drops from 1.277 to 1.171 at 0.273 rad; a flat valley at 0.086 has 1.241."""
         walls = [
             {"name": "front", "length": 5.88, "thickness": 0.54, "sides": ["left"], "connection": "interlock",
              "openings": [{"storey": 1, "x": 1, "z": 0.27, "width": 1.88, "height": 2.05}]},
@@ -216,11 +216,11 @@ class TestLeast:
 
     @pytest.mark.rest
     def test_all_of_a_small_building(self):
-        """Sixty heights a storey; twenty angles at twelve heights of walls that interlock."""
+        """Sixty heights a storey; twenty angles at six heights of walls that interlock."""
         check({**CROSSED, "walls": [{**each, "connection": "none"} for each in CROSSED["walls"]]}, 60, 20)
-        check(CROSSED, 12, 20)
+        check(CROSSED, 6, 20)
 
     @pytest.mark.rest
-    @pytest.mark.parametrize("seed", range(12))
+    @pytest.mark.parametrize("seed", range(6))
     def test_random_buildings(self, seed):
-        check(random_house(seed), 12, 9)
+        check(random_house(seed), 8, 6)
