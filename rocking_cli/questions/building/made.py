@@ -329,7 +329,7 @@ def overturning(building: Building, wall: Wall, z: float, angle: float | None = 
     fields |= {"one_sided": "positive"} | ({"rebound": building.rebound} if building.rebound is not None else {})
     fields |= {key: value for key, value in (
         ("loads", _loads(building, wall, z, outer, depth)), ("ties", _ties(building, wall, z, outer)),
-        ("interlock", friction), ("crushing", _crushing(building)), ("unusual", building.unusual),
+        ("interlock", friction), ("crushing", _crushing(building, parts[0], depth)), ("unusual", building.unusual),
     ) if value}  # fmt: skip
     held = friction is not None or bool(wedges)
     without = " without its gable" if not gable and any(each.wall == wall.name for each in building.gables) else ""
@@ -375,9 +375,12 @@ def _given_angle(building: Building) -> float:
     return float(np.radians(angle)) if isinstance(angle, float | int) else 0.0
 
 
-def _crushing(building: Building) -> dict[str, float] | None:
+def _crushing(building: Building, foot: Strip | None = None, depth: float = 0.0) -> dict[str, float] | None:
+    """Return how a hinge crushes, on the length of the part above it where that is less than the depth."""
     strength = building.masonry.crushing
-    return None if strength is None else {"strength": strength}
+    if strength is None:
+        return None
+    return {"strength": strength} | ({"depth": foot.length} if foot is not None and foot.length < depth else {})
 
 
 def held_levels(building: Building, wall: Wall) -> list[int]:
@@ -512,7 +515,14 @@ def standing(building: Building, each: OnTop, z: float | None = None) -> Made:
         fields["plane"] = "width"
     if isinstance(each, BellGable) and each.bells is not None:
         fields["loads"] = [{"name": "bells", "mass": each.bells, "at": [0.0, each.bells_height]}]
-    fields |= {key: value for key, value in (("crushing", _crushing(building)), ("unusual", building.unusual)) if value}
+    fields |= {
+        key: value
+        for key, value in (
+            ("crushing", _crushing(building, parts[0], max(each.length for each in parts))),
+            ("unusual", building.unusual),
+        )
+        if value
+    }
     what = {"Gable": "gable", "BellGable": "bell gable"}.get(type(each).__name__, "parapet")
     name = f"{each.name or f'{what} on {each.wall}'}: overturning about {low:.4g} m"
     height = min(low, building.height)  # above the last level the motion is that of its top
@@ -595,8 +605,10 @@ def corner(building: Building, k: int, z: float, angle: float) -> Made:
     fields |= {key: value for key, value in (
         ("loads", loads), ("rebound", building.rebound), ("unusual", building.unusual),
     ) if value}  # fmt: skip
+    unlimited = "its foot is an edge of no known length: that it crushes is not counted"
+    remarks = [unlimited] if building.masonry.crushing is not None else []
     name = f"{given.name or 'corner of ' + ' and '.join(given.walls)}: overturning about {z:.4g} m"
-    return Made("corner", given.walls[0], name, z, (z, top), "rigid_body", fields, angle)
+    return Made("corner", given.walls[0], name, z, (z, top), "rigid_body", fields, angle, remarks)
 
 
 def with_bars(building: Building, level: int, diameter: float) -> Building:

@@ -112,6 +112,14 @@ class TestWalls:
         typed = rk.RigidBody(parts=parts, density=1800.0, depth=8.0, one_sided="positive")
         same(house, overturning(house, house.walls[0], z), typed, z)
 
+    @pytest.mark.parametrize(("z", "depth"), [(0.0, 7.0), (1.2, 7.0), (4.6, 6.0), (2.5, 8.0)])
+    def test_a_hinge_crushes_beside_openings(self, z, depth):
+        """The hinge has the length of what stands on it: u = N/(2 strength length)."""
+        house = building([self.STEPPED], masonry=MASONRY | {"crushing": 2e6})
+        wall = overturning(house, house.walls[0], z).structure()
+        weight = wall.total_mass() * G
+        assert wall.inwards(Direction.POSITIVE, "foot") == pytest.approx(weight / (2 * 2e6 * depth), rel=1e-9)
+
     def test_a_wall_that_begins_above_the_ground(self):
         wall = {"name": "w", "length": 5.0, "thickness": [0.3], "storeys": [2, 2], "on": "beam", "density": 1200.0}
         house = building([wall, self.PLAIN])
