@@ -221,8 +221,8 @@ class Search:
             for k, (x, (low, high), count) in enumerate(zip(best, bounds, cells, strict=True)):
                 step = (high - low) / count / 2 * (1 if x < (low + high) / 2 else -1)
                 corners.append((*best[:k], x + step, *best[k + 1 :]))
-            stops = {"maxfev": SEARCHED, "xatol": 1e-3, "fatol": 1e-4, "initial_simplex": corners}
-            found = minimize(lambda x: bounded(*x), best, method="Nelder-Mead", bounds=bounds, options=stops)
+            within: dict[str, Any] = {"maxfev": SEARCHED, "xatol": 1e-3, "fatol": 1e-4, "initial_simplex": corners}
+            found = minimize(lambda x: bounded(*x), best, method="Nelder-Mead", bounds=bounds, options=within)
             refined = tuple(map(float, found.x))
         return refined if float(found.fun) < values[best] * (1 - LOWER) else best
 
