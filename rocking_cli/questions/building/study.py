@@ -250,12 +250,14 @@ class Search:
         of_level = yield from self._one(partial(about, low, *at_level))
         if has_gable:
             yield from self._one(partial(about, low, *at_level, gable=False))
-        end = high - LEAST_REST * (high - low) if is_last and not has_gable else high
+        end = high - (LEAST_REST * (high - low) if is_last else LEVEL_HEIGHT)  # below it the floor at its top acts
         known = of_level.ratio if of_level is not None and not crack else None
         z, *angle = self.weakest(about, (low, end), *crack, cells=(COARSE, *CRACKS[1:])[: 1 + len(crack)], known=known)
         z = round(z, 3)
-        between = z > low + LEVEL_HEIGHT and (z < high - LEVEL_HEIGHT or (is_last and not has_gable))
-        if between and (of_level is None or self.ratio(about(z, *angle)) < (1 - LOWER) * of_level.ratio):
+        others = [] if of_level is None else [of_level.ratio]
+        if z > high - 2 * LEVEL_HEIGHT:
+            others.append(self.ratio(about(high, *angle)))
+        if z > low + LEVEL_HEIGHT and (not others or self.ratio(about(z, *angle)) < (1 - LOWER) * min(others)):
             yield from self._one(partial(about, z, *angle))
 
     def of_others(self) -> Iterator[Found | LeftOutMechanism]:
