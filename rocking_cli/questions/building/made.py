@@ -34,7 +34,7 @@ from rocking_cli.questions.building.description import (
 from rocking_cli.studies.remark import Remark
 
 STRIPS = 6  # of a gable, each with its mean length: the mass is exact, the centroid 1.4 % too high
-ARCH_STRESS, ARCH_DEPTH, ARCH_RISE = 1.5, 0.1, 0.9  # of a wall that bends as an arch [EN 1996-1-1, 6.3.2]
+ARCH_THRUST, ARCH_RISE = 0.15, 1 / 1.2  # over f t and t, which give the strength f (t/L)^2 of EN 1996-1-1, 6.3.2
 MOST_SLENDER_ARCH = 20.0  # length over thickness
 MOST_ARCH_RATIO = 0.57  # g, as one rigid body of the inertia of two has at most 1/sqrt(3) as its ratio at rest
 LEAST_OVERLAP = 1e-6  # share of an overlap below which nothing of it is left
@@ -339,7 +339,7 @@ def overturning(building: Building, wall: Wall, z: float, angle: float | None = 
     fields |= {"one_sided": "positive"} | ({"rebound": building.rebound} if building.rebound is not None else {})
     fields |= {key: value for key, value in (
         ("loads", _loads(building, wall, z, outer, depth)), ("ties", _ties(building, wall, z, outer)),
-        ("interlock", friction), ("crushing", _crushing(building)), ("unusual", building.unusual),
+        ("interlock", friction), ("crushing", _crushing(building, parts[0], depth)), ("unusual", building.unusual),
     ) if value}  # fmt: skip
     held = friction is not None or bool(wedges)
     name = f"{wall.name}: overturning{'' if gable else ' without its gable'} about {z:.4g} m"
@@ -386,9 +386,12 @@ def _given_angle(building: Building) -> float:
     return float(np.radians(angle)) if isinstance(angle, float | int) else 0.0
 
 
-def _crushing(building: Building) -> dict[str, float] | None:
+def _crushing(building: Building, foot: Strip | None = None, depth: float = 0.0) -> dict[str, float] | None:
+    """Return how a hinge crushes, on the length of the part above it where that is less than the depth."""
     strength = building.masonry.crushing
-    return None if strength is None else {"strength": strength}
+    if strength is None:
+        return None
+    return {"strength": strength} | ({"depth": foot.length} if foot is not None and foot.length < depth else {})
 
 
 def held_levels(building: Building, wall: Wall) -> list[int]:
@@ -466,8 +469,8 @@ def _parts(building: Building, each: OnTop, low: float) -> list[Strip]:
 def arch(building: Building, wall: Wall) -> Made:
     """Return the top storey of a wall that bends horizontally, as an arch in its thickness between what confines it.
 
-    The thrust of an arch of three hinges, each of a tenth of the thickness at 1.5 times the strength, has the arm
-    0.9 t [EN 1996-1-1, 6.3.2]: 8 N r/(w L^2) = f t/(gamma L^2) nearly. It decreases with the arm, to zero at 0.9 t.
+    The thrust is that of three hinges of a tenth of the thickness at 1.5 times the strength; its arm gives the printed
+    strength f t^2/L^2 [EN 1996-1-1, 6.3.2], and decreases to zero.
 
     Raises
     ------
@@ -486,7 +489,7 @@ def arch(building: Building, wall: Wall) -> Made:
     t, span, height = wall.thick(top), confined.length or wall.length, high - low
     if span > MOST_SLENDER_ARCH * t:
         raise NotMade("slender", exists=False, length=span, most=MOST_SLENDER_ARCH)
-    thrust = ARCH_STRESS * ARCH_DEPTH * strength / (building.masonry.gamma or 1.0) * t * height
+    thrust = ARCH_THRUST * strength / (building.masonry.gamma or 1.0) * t * height
     if thrust > confined.resistance:
         raise NotMade("spread", exists=False, thrust=thrust / 1e3, resistance=confined.resistance / 1e3)
     density = wall.density or building.masonry.density
@@ -520,7 +523,14 @@ def standing(building: Building, each: OnTop, z: float | None = None) -> Made:
         fields["plane"] = "width"
     if isinstance(each, BellGable) and each.bells is not None:
         fields["loads"] = [{"name": "bells", "mass": each.bells, "at": [0.0, each.bells_height]}]
-    fields |= {key: value for key, value in (("crushing", _crushing(building)), ("unusual", building.unusual)) if value}
+    fields |= {
+        key: value
+        for key, value in (
+            ("crushing", _crushing(building, parts[0], max(each.length for each in parts))),
+            ("unusual", building.unusual),
+        )
+        if value
+    }
     what = {"Gable": "gable", "BellGable": "bell gable"}.get(type(each).__name__, "parapet")
     name = f"{each.name or f'{what} of {each.wall}'}: overturning about {low:.4g} m"
     height = min(low, building.height)  # above the last level the motion is that of its top
@@ -604,9 +614,11 @@ def corner(building: Building, k: int, z: float, angle: float) -> Made:
     fields |= {key: value for key, value in (
         ("loads", loads), ("rebound", building.rebound), ("unusual", building.unusual),
     ) if value}  # fmt: skip
+    remarks = [Remark("edge", {})] if building.masonry.crushing is not None else []
     first, second = given.walls
     name = f"{given.name or f'corner of {first} and {second}'}: overturning about {z:.4g} m"
-    return Made("corner", first, name, z, (z, top), "rigid_body", fields, angle, given.name or "", second)
+    which = given.name or "", second
+    return Made("corner", first, name, z, (z, top), "rigid_body", fields, angle, *which, remarks=remarks)
 
 
 def with_bars(building: Building, level: int, diameter: float) -> Building:
