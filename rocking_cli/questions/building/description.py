@@ -22,6 +22,7 @@ from rocking_cli.text import did_you_mean, in_short
 
 HINT = "`rocking new building` prints one to start from"
 USUAL_STOREY = (1.8, 12.0)  # m; other heights of a storey are asked about
+USUAL_LOAD = (30.0, 2500.0)  # kg/m2, of a floor or roof
 USUAL_THICKNESS = (0.08, 3.0)  # m
 MOST_COURSE = 1.0  # m, of height and overlap of courses
 MAX_WALLS = 500
@@ -57,6 +58,9 @@ class Masonry(Part):
     shear: float | None = quantity("shear strength, for anchor plates", unit="Pa", default=None, ge=1e3, le=1e12)
     gamma: float | None = partial_factor("both strengths are")
     source: Name | None = Field(None, description="where both strengths are from")
+    friction: float | None = quantity(
+        "coefficient of friction of the joints of walls that bend", default=None, gt=0, le=10
+    )
     crushing: float | None = quantity(
         "compressive strength at which hinges crush; if omitted, unlimited", unit="Pa", default=None, gt=0, le=1e12
     )
@@ -241,6 +245,7 @@ class Building(Part):
     levels: Annotated[list[Height], Field(min_length=2, max_length=200)] = quantity(
         "heights of foot, floors and top of the walls above the foundation", unit="m", example=[0.0, 3.5, 6.5]
     )
+    language: Literal["en", "it"] | None = Field(None, description="language of answers on it, en or it")
     T1: float | None = quantity(
         "first period of the undamaged building; if omitted, 0.05 H^(3/4)", unit="s", default=None, gt=0, le=10
     )
@@ -418,12 +423,18 @@ def _of_what_bears(given: Mapping[str, Any], named: Mapping[str, Any]) -> Iterat
         for k, each in enumerate(_list(given.get(key))):
             if isinstance(each, dict) and isinstance(each.get("level"), int):
                 yield from on_walls((key, k), each, each["level"])
-                if key == "ties" and each["level"] <= count and isinstance(each.get("below"), float):
-                    low = given["levels"][each["level"] - 1]
-                    if given["levels"][each["level"]] - each["below"] <= low:
-                        yield (key, k, "below"), "is more than the height of the storey: name the level next above it"
+                if key == "ties" and 1 <= each["level"] <= count:
+                    yield from (((key, k, *place), why) for place, why in _of_tie(each, given, named))
     if isinstance(given.get("roof"), dict):
         yield from on_walls(("roof",), given["roof"], count)
+    bearing = [(("floors", k), each) for k, each in enumerate(_list(given.get("floors")))] + [
+        (("roof",), given.get("roof"))
+    ]
+    for place, each in bearing:
+        load = _number(each.get("load"), USUAL_LOAD[0]) if isinstance(each, dict) else USUAL_LOAD[0]
+        if not USUAL_LOAD[0] <= load <= USUAL_LOAD[1] and "load" not in _list(given.get("unusual")):
+            guess = f"did you mean {load:g} kN/m2? " if load < USUAL_LOAD[0] else f"did you mean {load:g} N/m2? "
+            yield (*place, "load"), f"is {load:.4g} kg/m2: {guess}{_if_meant('load')}"
     for key in ("gables", "parapets", "bell_gables"):
         for k, each in enumerate(_list(given.get(key))):
             if not isinstance(each, dict) or not isinstance(name := each.get("wall"), str):
@@ -442,6 +453,26 @@ def _of_what_bears(given: Mapping[str, Any], named: Mapping[str, Any]) -> Iterat
                 yield ("corners", k, "walls", m), f"is {name} again: a corner is of two walls"
         if not given.get("interlock"):
             yield ("corners", k), "needs `interlock` of the building: without it the walls overturn each for itself"
+
+
+def _of_tie(tie: Mapping[str, Any], given: Mapping[str, Any], named: Mapping[str, Any]) -> Iterator[tuple[Place, str]]:
+    """Yield what is wrong with the height of ties."""
+    levels, level, below = given["levels"], tie["level"], _number(tie.get("below"))
+    if below >= levels[level] - levels[level - 1]:
+        yield ("below",), "is more than the height of the storey: name the level next above it"
+    plate = tie.get("plate") if isinstance(tie.get("plate"), dict) else {}
+    half = _number((plate or {}).get("height")) / 2
+    gabled = {each.get("wall") for each in _list(given.get("gables")) if isinstance(each, dict)}
+    for name in (each for each in _list(tie.get("walls")) if isinstance(each, str) and each in named):
+        is_top = level == _reach(named[name], len(levels) - 1)[1] and name not in gabled
+        if is_top and below < half:
+            yield ("below",), f"has plates that end above the top of {name}: give at least `below: {half:g}`"
+
+
+def one_sided_toothing(building: Building) -> list[tuple[str, str]]:
+    """Return the pairs of walls of which the first interlocks with the second, and the second with none."""
+    interlocks = [each for each in building.walls if each.connection == "interlock"]
+    return [(each.name, name) for each in interlocks for name in each.sides if building.wall[name].connection == "none"]
 
 
 def read_building(path: Path) -> Building:

@@ -117,6 +117,13 @@ class Made:
     without_gable: bool = False
     remarks: Sequence[Remark] = ()
 
+    @property
+    def title(self) -> Remark:
+        """What it is: the wall or part, how it moves, and where."""
+        part = self.part or Remark.of(f"{self.kind}_on", wall=self.wall, other=self.other)
+        key = f"{self.kind}_without" if self.without_gable else self.kind
+        return Remark.of(key, wall=self.wall, name=part, z=self.hinge[0], top=self.hinge[1])
+
     def structure(self) -> Mechanism:
         """Return the structure. Raises `InputError` if its fields do not fit together."""
         cls = _registry()[self.mechanism]
@@ -443,7 +450,7 @@ def bending(building: Building, wall: Wall, foot: int, top: int) -> Made:
     fields = {"thickness": thickness, "height": _rounded(high - low), "hinge": "weakest", "overburden": round(load, 1),
               "overburden_eccentricity": _rounded(x), "depth": wall.length,
               "density": round(mass / (thickness * (high - low) * wall.length), 4)}  # fmt: skip
-    fields |= {"unusual": building.unusual} if building.unusual else {}
+    fields |= _given(unusual=building.unusual, friction=building.masonry.friction)
     name = f"{wall.name}: bending between {low:.4g} and {high:.4g} m"
     if (crushing := _crushing(building)) is not None:  # the weakest hinge is that of pivots on the faces
         free: Any = _registry()["spanning_wall"].from_fields(fields)

@@ -8,17 +8,19 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.excitation.records.opening import original
 from rocking_cli.plotting.style import in_language
+from rocking_cli.questions.building.made import tie_height
 from rocking_cli.questions.building.picture import draw_building
 from rocking_cli.questions.building.study import Assessed, BarsOfLevel, Found
 from rocking_cli.questions.building.view import (
     PACKAGE,
+    compared,
     conditions,
     designed_in_words,
     notes,
     ranked,
-    title_of,
     verdict,
     words,
 )
@@ -52,15 +54,19 @@ def write_sheet(
     say = words(language, is_plain=False)
     rows = ranked(found, say)
     figure = in_language(say, partial(draw_building, found, words(language)))
-    counted = list({row.made.kind: row for row in reversed(found.rows)}.values())[::-1][:DETAILED]
+    kinds = [row.made.kind for row in found.rows]
+    counted = [row for k, row in enumerate(found.rows) if row.made.kind not in kinds[:k]][:DETAILED]
+    other = found.strengthened
     context: dict[str, Any] = {
         "found": found, "ranked": rows, "listed": LISTED_FIRST, "most": MAX_LISTED,
         "designed": [] if designed is None else [*map(guarded, designed_in_words(designed, say))],
         "counted": [*map(partial(_section, say), counted)],
-        "verdict": [*map(guarded, verdict(found, say))], "conditions": [*map(guarded, conditions(found, say))],
+        "verdict": [*map(guarded, verdict(found, say))], "conditions": [*map(guarded, conditions(other or found, say))],
         "notes": [*map(guarded, notes(found, say))], "fails": found.conclusion.concluded is not Concluded.SATISFIED,
-        "figure": figure, "command": title.command, "files": _files(asked), "walls": _walls(found),
-        "after": None if found.strengthened is None else [*map(guarded, verdict(found.strengthened, say))],
+        "figure": figure, "command": title.command, "files": _files(asked), "walls": _walls(found, say),
+        "floors": _floors(found, say), "ties": _ties(found),
+        "after": [] if other is None else [*map(guarded, verdict(other, say))],
+        "compared": None if other is None else translated(say, View({}, [compared(found, other, say)])).parts[0],
     }  # fmt: skip
     parts = sections(say, PACKAGE, "building", context)
     made = SheetSources(File("building", b""), None, {}, versions(found.governs.structure.mechanism))
@@ -88,14 +94,14 @@ def _section(say: Any, row: Found) -> dict[str, Any]:
     cautions: Sequence[str] = cautions_of(row.structure.mechanism, say)
     limits = limits_in_words(row.conclusion, spoken.say)
     return {
-        "title": title_of(row, say), "row": row, "tables": tables[:2],
+        "title": say(row.made.title), "row": row, "tables": tables[:2],
         "texts": [guarded(each) for each in (*limits, *cautions)], "mechanism": row.structure.mechanism,
     }  # fmt: skip
 
 
 def _appended(part: SheetPart, rank: int, row: Found, say: Any) -> SheetPart:
     """Return the workings of a mechanism with anchors of their own."""
-    heading = f"{say('appendix')} {rank}: {title_of(row, say)}"
+    heading = f"{say('appendix')} {rank}: {say(row.made.title)}"
     within = [replace(each, key=f"m{rank}-{each.key}") for each in part.parts]
     return replace(part, key=f"workings-{rank}", heading=heading, parts=within)
 
@@ -105,11 +111,28 @@ def _files(asked: BuildingAsked) -> list[File]:
     return [File(str(each), original(each)) for each in given if isinstance(each, str | Path)]
 
 
-def _walls(found: Assessed) -> list[list[str]]:
-    rows = []
+def _walls(found: Assessed, say: Any) -> list[list[Any]]:
+    rows, levels = list[list[Any]](), found.building.levels
     for wall in found.building.walls:
         foot, top = wall.reaches(found.building.count)
-        thick = "; ".join(f"{t:g}" for t in dict.fromkeys(wall.thick(k) for k in range(foot + 1, top + 1)))
-        levels = found.building.levels
-        rows.append([wall.name, f"{levels[foot]:g}", f"{levels[top]:g}", f"{wall.length:g}", thick, wall.connection])
+        thick = dict.fromkeys(wall.thick(k) for k in range(foot + 1, top + 1))
+        ends = levels[foot], levels[top], wall.length, "; ".join(say.number(t) for t in thick)
+        rows.append([wall.name, *ends, say(f"connection_{wall.connection}")])
     return rows
+
+
+def _floors(found: Assessed, say: Any) -> list[list[Any]]:
+    weight = [(name, each, each.load * STANDARD_GRAVITY / 1e3) for name, _, each in found.building.bearing]
+    how = [say("slides") if each.sliding else say("held") for _, each, _ in weight]
+    return [
+        [name, ", ".join(each.walls), load, each.span, each.thrust / 1e3, word]
+        for (name, each, load), word in zip(weight, how, strict=True)
+    ]
+
+
+def _ties(found: Assessed) -> list[list[Any]]:
+    building = found.building
+    return [
+        [each.name, ", ".join(each.walls), tie_height(building, each), f"{each.bars} x {1e3 * each.diameter:.0f} mm"]
+        for each in building.ties
+    ]

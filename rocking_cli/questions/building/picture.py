@@ -108,7 +108,7 @@ def _draw_elevation(axes: Axes, building: Building, wall: Wall, *, named: bool =
             z = tie_height(building, tie)
             places = (np.arange(tie.bars) + 0.5) * right / tie.bars
             axes.plot(places, [z] * tie.bars, "x", color=style.TIE["color"], markersize=4, zorder=4)
-    axes.plot([-0.1 * right, 1.1 * right], [levels[0]] * 2, color=style.EARTH, linewidth=style.MEDIUM, zorder=1)
+    axes.plot([0.0, right], [levels[0]] * 2, color=style.EARTH, linewidth=style.MEDIUM, zorder=1)
     if named:
         axes.annotate("", (0.0, low - 0.4), (right, low - 0.4), annotation_clip=False,
                       arrowprops={"arrowstyle": "<->", "color": style.MEASURE})  # fmt: skip
@@ -143,7 +143,9 @@ def _draw_mechanisms(axes: Axes, wall: Wall, rows: Sequence[tuple[int, Found]]) 
             at = (low + high) / 2
             axes.annotate("", (0, at), (wall.length, at), arrowprops={"arrowstyle": "<->", "color": colour})
         elif made.kind == "corner":
-            axes.plot([0.0, 0.1 * wall.length], [low, high], linestyle="--", **look)
+            at_right = len(wall.sides) > 1 and made.other == wall.sides[1]
+            corner = (wall.length, 0.9 * wall.length) if at_right else (0.0, 0.1 * wall.length)
+            axes.plot(corner, [low, high], linestyle="--", **look)
             at = low
         else:
             axes.plot([0.0, wall.length], [low, low], **look)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise, product
-from math import inf, isnan, nan, radians
+from math import ceil, inf, isnan, nan, radians
 from typing import Any, NamedTuple, get_args
 
 import numpy as np
@@ -27,11 +27,13 @@ from rocking_cli.verification.results import Histories, Verification
 
 COARSE, REFINED = 4, 8  # intervals of a search in which the least is looked for, and evaluations in the best of them
 CRACKS = 12, 8  # of angles alone, and beside heights: ratios drop where the courses slip off before the end
+CELL = 1.0  # m, of which storeys that are higher have more intervals
 SEARCHED = 32  # evaluations of a search by two arguments
 PERIOD_FACTOR = 0.05  # C1 of T1 = C1 H^(3/4), H in m
 LENGTHENED, DAMPING, LATER_DAMPING = 1.75, 0.05, 0.10  # T1 at SLV over that at SLD, and damping ratios
 LEAST_REST = 0.05  # share of the last storey above the highest hinge that is tried
 LEAST_GABLE = 0.2  # the same of a gable
+OF_WALLS = ("overturning", "bending", "arch")  # kinds of mechanisms of walls themselves
 LEVEL_HEIGHT = 0.01  # m; a weakest hinge this near a level is that of the level
 FAR_ABOVE = 10.0  # times the least ratio of a grid; a search has any larger one as this
 LOWER = 1e-3  # share by which a hinge between levels must be weaker to be listed beside them
@@ -71,11 +73,24 @@ class Found:
 @short_repr
 @dataclass(frozen=True)
 class LeftOutMechanism:
-    """A mechanism that was not verified: its name, why, and whether it could govern."""
+    """A mechanism that was not verified.
 
-    name: str
+    Parameters
+    ----------
+    title : Remark
+        What it is.
+    why : Remark or str
+        Why it was not verified.
+    open : bool
+        Whether it exists and may govern.
+    falls : bool
+        Whether it does not stand under its loads without an earthquake.
+    """
+
+    title: Remark
     why: Remark | str
     open: bool = False
+    falls: bool = False
 
 
 @short_repr
@@ -119,8 +134,13 @@ class Assessed:
 
     @property
     def conclusion(self) -> Conclusion:
-        """The conclusion on the building: that of the worst mechanism; not checked if one that could govern is open."""
+        """The conclusion on the building: that of the worst mechanism, unless one that is left out decides.
+
+        It is not satisfied if one does not stand without an earthquake, and not checked if one that may govern is open.
+        """
         end = self.governs.conclusion
+        if any(each.falls for each in self.left_out):
+            return replace(end, concluded=Concluded.NOT_SATISFIED, ratio=0.0, method="", limit_state="", limits=[])
         fine = end.concluded in (Concluded.SATISFIED, Concluded.SATISFIED_IF)
         return replace(end, concluded=Concluded.NOT_CHECKED) if fine and any(e.open for e in self.left_out) else end
 
@@ -170,7 +190,7 @@ class Search:
         try:
             ratio = self.verified(made).ratio
         except InputError as error:
-            return 0.0 if any(each.field in ("loads", "ties") for each in error.problems) else inf
+            return 0.0 if _falls(error) else inf
         except (MechanismError, SolverError):
             return inf
         return inf if isnan(ratio) else ratio
@@ -234,9 +254,10 @@ class Search:
         for level in range(foot, top):
             yield from self._overturning(wall, level, is_last=level + 1 == top)
         for low, high in pairwise(making.held_levels(building, wall)):
-            name = f"{wall.name}: bending between {building.levels[low]:.4g} and {building.levels[high]:.4g} m"
-            yield from self._one(partial(making.bending, building, wall, low, high), name)
-        yield from self._one(partial(making.arch, building, wall), f"{wall.name}: horizontal arch")
+            title = Remark.of("bending", wall=wall.name, z=building.levels[low], top=building.levels[high])
+            yield from self._one(partial(making.bending, building, wall, low, high), title)
+        title = Remark.of("arch", wall=wall.name, z=building.levels[top - 1])
+        yield from self._one(partial(making.arch, building, wall), title)
 
     def _overturning(self, wall: Wall, level: int, *, is_last: bool) -> Iterator[Found | LeftOutMechanism]:
         """Yield a wall that overturns about a level, also without its gable, and about a weaker hinge above it."""
@@ -252,8 +273,9 @@ class Search:
         if has_gable:
             yield from self._one(partial(about, low, *at_level, gable=False))
         end = high - (LEAST_REST * (high - low) if is_last else LEVEL_HEIGHT)  # below it the floor at its top acts
+        cells = (max(COARSE, ceil((high - low) / CELL)), *CRACKS[1:])
         known = of_level.ratio if of_level is not None and not crack else None
-        z, *angle = self.weakest(about, (low, end), *crack, cells=(COARSE, *CRACKS[1:])[: 1 + len(crack)], known=known)
+        z, *angle = self.weakest(about, (low, end), *crack, cells=cells[: 1 + len(crack)], known=known)
         z = round(z, 3)
         others = [] if of_level is None else [of_level.ratio]
         if z > high - 2 * LEVEL_HEIGHT:
@@ -285,20 +307,26 @@ class Search:
                 else:
                     yield from self._one(partial(turned, radians(courses.angle)))
 
-    def _one(self, make: Callable[[], Made], name: str = "") -> Any:
+    def _one(self, make: Callable[[], Made], title: Remark | None = None) -> Any:
         """Yield a mechanism with its verification, or why there is none; return it, or None."""
         try:
             made = make()
+            title = made.title
+            verified = self.verified(made)
         except NotMade as why:
-            yield LeftOutMechanism(name, why.why, why.exists)
-            return None
-        try:
-            found = self.verified(made)
+            yield LeftOutMechanism(title or Remark.of("part_of_building"), why.why, why.exists)
         except (InputError, MechanismError, SolverError) as error:
-            yield LeftOutMechanism(made.name, str(error), open=True)
-            return None
-        yield found
-        return found
+            assert title is not None  # it was made
+            yield LeftOutMechanism(title, str(error), open=True, falls=_falls(error))
+        else:
+            yield verified
+            return verified
+
+
+def _falls(error: Exception) -> bool:
+    """Return whether a structure does not stand under its loads, as an error says."""
+    problems = error.problems if isinstance(error, InputError) else []
+    return any(each.field in ("loads", "ties") for each in problems)
 
 
 def mechanisms(search: Search, first: int, stop: int) -> list[Found | LeftOutMechanism]:
@@ -414,7 +442,7 @@ class BarsTried(NamedTuple):
         Diameter [m].
     ratio : float
         Least ratio of the mechanisms that the ties hold.
-    name : str
+    title : Remark
         The mechanism that has it.
     satisfied : bool
         Whether all these mechanisms satisfy the code.
@@ -422,7 +450,7 @@ class BarsTried(NamedTuple):
 
     diameter: float
     ratio: float
-    name: str
+    title: Remark
     satisfied: bool
 
 
@@ -439,14 +467,14 @@ class BarsOfLevel:
         Diameters in use, the least first, up to the first that suffices.
     whole : Conclusion
         The conclusion on the building with the last of them.
-    governs : str
+    governs : Remark
         The mechanism that governs it then.
     """
 
     level: int
     tried: Sequence[BarsTried]
     whole: Conclusion
-    governs: str
+    governs: Remark
 
     @property
     def diameter(self) -> float | None:
@@ -483,19 +511,24 @@ def bars_of_level(found: Assessed, level: int, progress: Callable[[int], object]
         raise InputError(Problem(f"level {level} has no ties", field=named("design"), hint=hint))
     for diameter in BAR_DIAMETERS:
         search = Search(making.with_bars(building, level, diameter), found.site)
-        rows = [row for wall in held for row in search.of_wall(wall) if isinstance(row, Found)]
+        every = [each for wall in held for each in search.of_wall(wall)]
+        rows = [each for each in every if isinstance(each, Found)]
         tied = [row for row in rows if any(_of(names, tie["name"]) for tie in row.made.fields.get("ties", ()))]
         progress(1)
+        if falling := [each for each in every if isinstance(each, LeftOutMechanism) and each.falls]:
+            tried.append(BarsTried(diameter, 0.0, falling[0].title, satisfied=False))
+            continue
         if not tied:
             raise InputError(Problem(f"the ties of level {level} hold no mechanism that can be verified"))
         worst = ranked(tied)[0]
         satisfied = worst.conclusion.concluded in (Concluded.SATISFIED, Concluded.SATISFIED_IF)
-        tried.append(BarsTried(diameter, min(row.ratio for row in tied), worst.made.name, satisfied))
+        tried.append(BarsTried(diameter, min(row.ratio for row in tied), worst.made.title, satisfied))
         if satisfied:
             break
-    others = [row for row in found.rows if row.made.wall not in {wall.name for wall in held}]
+    again = {wall.name for wall in held}
+    others = [row for row in found.rows if row.made.wall not in again or row.made.kind not in OF_WALLS]
     whole = ranked([*rows, *others])[0]
-    return BarsOfLevel(level, tried, whole.conclusion, whole.made.name)
+    return BarsOfLevel(level, tried, whole.conclusion, whole.made.title)
 
 
 def _of(names: Iterable[str], name: str) -> bool:

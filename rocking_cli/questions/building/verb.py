@@ -55,13 +55,18 @@ def building(asked: BuildingAsked, watch: Watcher) -> Answer[Assessed]:
     'front: overturning about 4 m'
     """
     from rocking_cli.core.hung.ties import BAR_DIAMETERS
+    from rocking_cli.questions.building.description import one_sided_toothing
     from rocking_cli.questions.building.study import NoMechanism, assess, bars_of_level, compared, shaken
     from rocking_cli.questions.building.view import columns, view, words
     from rocking_cli.verification.check import refuse
 
     given, folder = _read(asked.building, watch)
     site = _site(asked, given, folder)
-    language = language_of(asked.language, site, watch)
+    language = language_of(asked.language or given.language, site, watch)
+    for one, side in one_sided_toothing(given):
+        watch.warn(
+            f"{one} interlocks with {side}, but {side} has no `connection: interlock`: it overturns free of {one}"
+        )
     say, requested = words(language), asked.requested
     refuse(site, motions=bool(requested))
     if asked.sheet is not None:
@@ -78,7 +83,7 @@ def building(asked: BuildingAsked, watch: Watcher) -> Answer[Assessed]:
             result = examined(given, progress=advance)
             after = None if other is None else examined(other, progress=advance)
     except NoMechanism as error:
-        raise InputError(*(Problem(f"{each.name}: {say(each.why)}") for each in error.args[0])) from None
+        raise InputError(*(Problem(f"{say(each.title)}: {say(each.why)}") for each in error.args[0])) from None
     if requested:
         with watch.progress(asked.worst * (1 if after is None else 2), "mechanisms under motions"):
             result = shaken(result, asked.worst, _histories(asked, result, watch))

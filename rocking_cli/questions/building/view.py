@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, replace
+from dataclasses import replace
 from math import degrees
 from operator import itemgetter
 from typing import Any, NamedTuple
@@ -17,13 +17,12 @@ from rocking_cli.questions.building.study import (
     LENGTHENED,
     Assessed,
     BarsOfLevel,
-    BarsTried,
     Found,
     floor_of,
 )
 from rocking_cli.studies.conclusion import Concluded, Effect
 from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, table_of
-from rocking_cli.views.conclusion import conclusion_data, limit_in_words, next_in_words, of_verification
+from rocking_cli.views.conclusion import conclusion_data, limit_in_words, of_verification
 from rocking_cli.views.sheet.language import Language, texts_of, translated
 from rocking_cli.views.verification import showing
 from rocking_cli.views.view import Aside, Table, View
@@ -54,14 +53,6 @@ def code_words(found: Assessed, say: Language) -> Language:
     return spoken
 
 
-def title_of(found: Found, say: Language) -> str:
-    """Return what a mechanism is: the wall, how it moves, and where."""
-    made = found.made
-    low, high = (say.formula(f"{z:.4g}") for z in made.hinge)
-    name = made.part or say(f"{made.kind}_on", wall=made.wall, other=made.other)
-    return say(f"{made.kind}_without" if made.without_gable else made.kind, wall=made.wall, z=low, top=high, name=name)
-
-
 def ranked(found: Assessed, say: Language) -> list[RankedMechanism]:
     """Return the mechanisms with their ranks and words."""
     spoken, rows = code_words(found, say), list[RankedMechanism]()
@@ -69,7 +60,7 @@ def ranked(found: Assessed, say: Language) -> list[RankedMechanism]:
         end, methods = each.conclusion, each.verification.deciding.methods
         method = methods[end.method].title if end.method in methods else "time histories"
         limits = f"{end.limit_state} {spoken(method.removesuffix(f' at {end.limit_state}'))}".strip()
-        rows.append(RankedMechanism(rank, each, title_of(each, say), say(f"short_{end.concluded.value}"), limits))
+        rows.append(RankedMechanism(rank, each, say(each.made.title), say(f"short_{end.concluded.value}"), limits))
     return rows
 
 
@@ -88,14 +79,6 @@ COLUMNS: Sequence[Column[RankedMechanism]] = (
     Column("top", lambda row: row.found.made.hinge[1], "m"),
     Column("shaken_at", of("found.made.z"), "m"),
     Column("crack", lambda row: None if row.found.made.angle is None else degrees(row.found.made.angle), "deg"),
-    Column("lambda", lambda row: min(each.lambda_ for each in row.found.structure.statics), "g"),
-)
-
-
-TRIED: Sequence[Column[BarsTried]] = (
-    only_shown("bars", of("diameter"), lambda diameter: f"{1000 * diameter:.0f} mm"),
-    only_shown("least ratio", of("ratio")),
-    only_shown("mechanism", of("name"), text=True),
 )
 
 
@@ -114,13 +97,17 @@ def view(found: Assessed, designed: BarsOfLevel | None, say: Language) -> View:
     rows = ranked(found, say)
     table = table_of(say("table", count=len(rows)), COLUMNS, rows)
     parts: list[Table | str] = [" ".join(verdict(found, say)), replace(table, asides=range(SHOWN_ROWS, len(rows)))]
-    parts += [say("more_rows", count=len(rows) - SHOWN_ROWS)] * (len(rows) > SHOWN_ROWS)
     if found.strengthened is not None:
-        parts += [_compared(found, found.strengthened, say), *verdict(found.strengthened, say)]
+        parts += [compared(found, found.strengthened, say), *verdict(found.strengthened, say)]
     if designed is not None:
         title = say("designed", level=designed.level)
-        parts += [table_of(title, TRIED, designed.tried), *designed_in_words(designed, say)]
-    parts += [*conditions(found, say), *notes(found, say)]
+        columns = (
+            only_shown("bars", of("diameter"), lambda diameter: f"{1000 * diameter:.0f} mm"),
+            only_shown("least ratio", of("ratio")),
+            only_shown("mechanism", of("title"), say, text=True),
+        )
+        parts += [table_of(title, columns, designed.tried), *designed_in_words(designed, say)]
+    parts += [*conditions(found.strengthened or found, say), *notes(found, say)]
     return translated(say, View(lambda: data(found, designed, say), parts))
 
 
@@ -130,12 +117,15 @@ def verdict(found: Assessed, say: Language) -> Iterator[str]:
     end, name = found.conclusion, found.building.name or say("building")
     spoken = code_words(found, say)
     yield say(f"verdict_{end.concluded.value}", name=name, site=found.site.site.name or say("the site"))
-    yield say("governing", mechanism=title_of(worst, say), count=len(found.rows))
+    falling = [each for each in found.left_out if each.falls]
+    if falling:
+        yield say("falls", mechanism=falling[0].title, why=say(falling[0].why))
+    yield say("governing_others" if falling else "governing", mechanism=worst.made.title, count=len(found.rows))
     yield from of_verification(worst.verification, spoken)[1:2]
     bad = [say(f"count_{each.value}", count=counts[each]) for each in Concluded if counts[each]]
     yield say("counts", counts="; ".join(bad))
-    if step := next_in_words(end, spoken):
-        yield step
+    if say.is_plain and end.concluded not in (Concluded.SATISFIED, Concluded.SATISFIED_IF):
+        yield say("next_step")
 
 
 def conditions(found: Assessed, say: Language) -> Iterator[str]:
@@ -144,7 +134,7 @@ def conditions(found: Assessed, say: Language) -> Iterator[str]:
     spoken = code_words(found, say)
     for row in found.rows:
         for limit in (each for each in row.conclusion.limits if each.effect is not Effect.REPLACES):
-            of_key.setdefault(limit.key, []).append((limit_in_words(limit, spoken), title_of(row, say)))
+            of_key.setdefault(limit.key, []).append((limit_in_words(limit, spoken), say(row.made.title)))
     for entries in of_key.values():
         texts = list(dict.fromkeys(text for text, _ in entries))
         mechanisms = _some(dict.fromkeys(title for _, title in entries), say)
@@ -163,27 +153,30 @@ def notes(found: Assessed, say: Language) -> Iterator[str]:
     """Yield what is not verified, how the motion of the building was taken, and what such a verification leaves out."""
     for each in found.left_out:
         if each.open:
-            yield say("open", name=each.name, why=say(each.why))
+            yield say("open", name=each.title, why=say(each.why))
     why: dict[str, list[str]] = {}
     for each in found.left_out:
         if not each.open:
-            why.setdefault(say(each.why), []).append(each.name)
+            why.setdefault(say(each.why), []).append(say(each.title))
     for reason, names in why.items():
         yield Aside(say("not_made", names=_some(names, say), why=reason))
     for row in found.rows:
         for remark in row.made.remarks:
-            yield f"{title_of(row, say)}: {say(remark)}."
+            yield f"{say(row.made.title)}: {say(remark)}."
     if any(row.made.z > 0 for row in found.rows) and getattr(found.site.site, "floor", None) is None:
         source = say("period_given" if found.period_given else "period_formula", T=found.period)
-        later = {"T": LENGTHENED * found.period, "xi": 100 * LATER_DAMPING, "first": 100 * DAMPING}
+        damped = {"xi": 100 * LATER_DAMPING, "first": 100 * DAMPING}
+        later = {"T": LENGTHENED * found.period, "factor": LENGTHENED, **damped}
         yield say("period", source=source, **later)
     if found.shaken:
-        names = [title_of(row, say) for row in found.rows if row.made.name in found.shaken]
+        names = [say(row.made.title) for row in found.rows if row.made.name in found.shaken]
         yield say("shaken", names=", ".join(names))
+    if found.building.masonry.crushing is None:
+        yield say("unlimited")
     yield say("covers")
 
 
-def _compared(found: Assessed, other: Assessed, say: Language) -> Table:
+def compared(found: Assessed, other: Assessed, say: Language) -> Table:
     """Return the least ratio of each kind of mechanism of each wall in both buildings."""
     least: dict[tuple[str, str], dict[bool, float]] = {}
     for after, rows in enumerate((found.rows, other.rows)):
@@ -200,7 +193,7 @@ def designed_in_words(found: BarsOfLevel, say: Language) -> Iterator[str]:
     """Yield which bars suffice for the ties of a level, and what governs the building with them."""
     last, level = found.tried[-1], found.level
     key = "no_bars" if found.diameter is None else "bars_suffice"
-    yield say(key, level=level, diameter=1000 * last.diameter, name=last.name)
+    yield say(key, level=level, diameter=1000 * last.diameter, name=last.title)
     if found.whole.concluded not in (Concluded.SATISFIED, Concluded.SATISFIED_IF):
         yield say("still", name=found.governs, verdict=say(f"short_{found.whole.concluded.value}"))
 
@@ -217,12 +210,14 @@ def data(found: Assessed, designed: BarsOfLevel | None, say: Language) -> dict[s
     plain: dict[str, Any] = {
         "building": found.building.name, "site": found.site.site.name, "conclusion": conclusion_data(found.conclusion),
         "governs": found.governs.made.name, "T1": found.period, "mechanisms": mechanisms,
-        "left_out": [{**asdict(each), "why": english(each.why)} for each in found.left_out],
+        "left_out": [{"title": english(each.title), "why": english(each.why), "open": each.open, "falls": each.falls}
+            for each in found.left_out
+        ],
         "shaken": list(found.shaken),
     }  # fmt: skip
     if designed is not None:
-        tried = [each._asdict() for each in designed.tried]
-        ends = {"conclusion": conclusion_data(designed.whole), "governs": designed.governs}
+        tried = [{**each._asdict(), "title": english(each.title)} for each in designed.tried]
+        ends = {"conclusion": conclusion_data(designed.whole), "governs": english(designed.governs)}
         plain["designed"] = {"level": designed.level, "diameter": designed.diameter, "tried": tried, **ends}
     if found.strengthened is not None:
         plain["strengthened"] = data(found.strengthened, None, say)
