@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise, product
@@ -33,6 +33,8 @@ LEAST_REST = 0.05  # share of the last storey above the highest hinge that is tr
 LEAST_GABLE = 0.2  # the same of a gable
 LEVEL_HEIGHT = 0.01  # m; a weakest hinge this near a level is that of the level
 FAR_ABOVE = 10.0  # times the least ratio of a grid; a search has any larger one as this
+FINE = Concluded.SATISFIED, Concluded.SATISFIED_IF
+OF_WALL = "overturning", "bending", "arch"  # what ties of a wall change
 LOWER = 1e-3  # share by which a hinge between levels must be weaker to be listed beside them
 
 
@@ -120,8 +122,8 @@ class Assessed:
     def conclusion(self) -> Conclusion:
         """The conclusion on the building: that of the worst mechanism; not checked if one that could govern is open."""
         end = self.governs.conclusion
-        fine = end.concluded in (Concluded.SATISFIED, Concluded.SATISFIED_IF)
-        return replace(end, concluded=Concluded.NOT_CHECKED) if fine and any(e.open for e in self.left_out) else end
+        is_open = end.concluded in FINE and any(each.open for each in self.left_out)
+        return replace(end, concluded=Concluded.NOT_CHECKED, method="") if is_open else end  # the next step is not its
 
 
 def floor_of(building: Building, site: SiteFile, z: float) -> SiteFile:
@@ -243,9 +245,10 @@ class Search:
             crack = [(0.0, courses.steepest)]
         about = partial(making.overturning, building, wall)
         at_level: tuple[float, ...] = self.weakest(partial(about, low), *crack) if crack else ()
-        of_level = yield from self._one(partial(about, low, *at_level))
+        name = f"{wall.name}: overturning about {low:.4g} m"
+        of_level = yield from self._one(partial(about, low, *at_level), name)
         if has_gable:
-            yield from self._one(partial(about, low, *at_level, gable=False))
+            yield from self._one(partial(about, low, *at_level, gable=False), f"{name} without its gable")
         end = high - LEAST_REST * (high - low) if is_last and not has_gable else high
         known = of_level.ratio if of_level is not None and not crack else None
         z, *angle = self.weakest(about, (low, end), *crack, known=known)
@@ -259,7 +262,7 @@ class Search:
         building = self.building
         for each in (*building.gables, *building.parapets, *building.bell_gables):
             about = partial(making.standing, building, each)
-            at_foot = yield from self._one(about)
+            at_foot = yield from self._one(about, f"{each.name or 'what stands'} on {each.wall}: overturning")
             if each in building.gables and at_foot is not None:
                 low, high = at_foot.made.hinge
                 (z,) = self.weakest(about, (low, high - LEAST_GABLE * (high - low)), known=at_foot.ratio)
@@ -286,10 +289,17 @@ class Search:
         try:
             found = self.verified(made)
         except (InputError, MechanismError, SolverError) as error:
-            yield LeftOutMechanism(made.name, str(error), open=True)
+            yield LeftOutMechanism(made.name, _why(error), open=True)
             return None
         yield found
         return found
+
+
+def _why(error: Exception) -> str:
+    """Return the first problem of an error as a clause, without the line of a file, and how many more there are."""
+    problems = error.problems if isinstance(error, InputError) else [Problem(str(error))]
+    lines = str(replace(problems[0], excerpt=None)).splitlines()
+    return "; ".join(map(str.strip, lines)) + f" (and {len(problems) - 1} more)" * (len(problems) > 1)
 
 
 def mechanisms(search: Search, first: int, stop: int) -> list[Found | LeftOutMechanism]:
@@ -348,6 +358,11 @@ def ranked(rows: Sequence[Found]) -> list[Found]:
     return sorted(rows, key=lambda each: [-float(f"{x:.9g}") for x in severity(each.conclusion)])
 
 
+def known_last(ratio: float) -> tuple[bool, float]:
+    """Return a key by which the least ratio is the first, after those that are not known."""
+    return (False, 0.0) if isnan(ratio) else (True, ratio)
+
+
 def shaken(found: Assessed, worst: int, sets: Mapping[str | None, Histories]) -> Assessed:
     """Return a building whose worst mechanisms are verified by time histories too.
 
@@ -404,17 +419,20 @@ class BarsTried(NamedTuple):
     diameter : float
         Diameter [m].
     ratio : float
-        Least ratio of the mechanisms that the ties hold.
+        Ratio of the worst mechanism that the ties hold; NaN if it is not known.
     name : str
-        The mechanism that has it.
+        This mechanism.
     satisfied : bool
-        Whether all these mechanisms satisfy the code.
+        Whether all that they hold satisfies the code.
+    concluded : Concluded
+        The conclusion on the worst.
     """
 
     diameter: float
     ratio: float
     name: str
     satisfied: bool
+    concluded: Concluded
 
 
 @short_repr
@@ -466,7 +484,8 @@ def bars_of_level(found: Assessed, level: int, progress: Callable[[int], object]
         If the level has no ties.
     """
     building, tried = found.building, list[BarsTried]()
-    names = {each.name for each in building.ties if each.level == level}
+    ties = [each.name for each in building.ties if each.level == level]
+    names = {*ties, *(f"{name} at level {level}" for name in ties)}
     held = [wall for wall in building.walls if any(wall.name in e.walls for e in building.ties if e.level == level)]
     if not held:
         levels = sorted({each.level for each in building.ties})
@@ -474,20 +493,20 @@ def bars_of_level(found: Assessed, level: int, progress: Callable[[int], object]
         raise InputError(Problem(f"level {level} has no ties", field=named("design"), hint=hint))
     for diameter in BAR_DIAMETERS:
         search = Search(making.with_bars(building, level, diameter), found.site)
-        rows = [row for wall in held for row in search.of_wall(wall) if isinstance(row, Found)]
-        tied = [row for row in rows if any(_of(names, tie["name"]) for tie in row.made.fields.get("ties", ()))]
+        every = [each for wall in held for each in search.of_wall(wall)]
+        rows = [each for each in every if isinstance(each, Found)]
+        tied = [row for row in rows if any(tie["name"] in names for tie in row.made.fields.get("ties", ()))]
         progress(1)
         if not tied:
             raise InputError(Problem(f"the ties of level {level} hold no mechanism that can be verified"))
         worst = ranked(tied)[0]
-        satisfied = worst.conclusion.concluded in (Concluded.SATISFIED, Concluded.SATISFIED_IF)
-        tried.append(BarsTried(diameter, min(row.ratio for row in tied), worst.made.name, satisfied))
-        if satisfied:
+        end = worst.conclusion.concluded
+        tried.append(BarsTried(diameter, worst.ratio, worst.made.name, end in FINE, end))
+        if end in FINE:
             break
-    others = [row for row in found.rows if row.made.wall not in {wall.name for wall in held}]
-    whole = ranked([*rows, *others])[0]
-    return BarsOfLevel(level, tried, whole.conclusion, whole.made.name)
-
-
-def _of(names: Iterable[str], name: str) -> bool:
-    return any(name == each or name.startswith(f"{each} at level ") for each in names)
+    others = [row for row in found.rows if row.made.wall not in {e.name for e in held} or row.made.kind not in OF_WALL]
+    named_rows = {row.made.name for row in rows}
+    left_out = [each for each in every if isinstance(each, LeftOutMechanism)]
+    left_out += [each for each in found.left_out if each.name not in named_rows]
+    whole = replace(found, rows=ranked([*rows, *others]), left_out=left_out)
+    return BarsOfLevel(level, tried, whole.conclusion, whole.governs.made.name)
