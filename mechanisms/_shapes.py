@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from math import pi
+from math import inf, pi
 from typing import Self
 
 import numpy as np
@@ -250,15 +250,16 @@ def plates(parts: Sequence[BodyPart], per_area: Sequence[float]) -> list[Plate]:
 
 def _check_joined(z: Sequence[Points], names: Sequence[int], touch: float) -> None:
     """Raise a geometry error if a part is not connected to the others."""
-    joined, separate = {0}, set(range(1, len(z)))
-    while separate:
-        gaps = {k: min(gap(z[k], z[j]) for j in joined) for k in separate}
-        touching = {k for k, apart in gaps.items() if apart <= touch}
+    touching, nearest = {0}, dict.fromkeys(range(1, len(z)), inf)
+    while nearest:
+        for k, apart in nearest.items():
+            nearest[k] = min(apart, *(gap(z[k], z[j]) for j in touching))
+        touching = {k for k, apart in nearest.items() if apart <= touch}
         if not touching:
-            k = min(separate)
-            why = f"it is joined to no other part: the nearest is {gaps[k]:.4g} m away"
+            k = min(nearest)
+            why = f"it is joined to no other part: the nearest is {nearest[k]:.4g} m away"
             raise geometry_error(("parts", names[k], "polygon"), why)
-        joined, separate = joined | touching, separate - touching
+        nearest = {k: apart for k, apart in nearest.items() if k not in touching}
 
 
 def united(name: str, pieces: Sequence[tuple[int, Body]]) -> Body:

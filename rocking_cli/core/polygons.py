@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rocking_cli.arrays import Bools, Points, Reals
-from rocking_cli.core.kinematics import area_of, distance, inside, squared
+from rocking_cli.core.kinematics import area_of, distance, following, inside, squared
 
 POINT_DISTANCE = 1e-9  # distance below which points coincide, over the size of the polygon
 BOXES_PER_BATCH = 256
@@ -27,7 +27,7 @@ def size_of(z: Points) -> float:
 
 def thickness_of(z: Points) -> float:
     """Return the least extent of a polygon perpendicular to one of its sides [m]."""
-    side = np.roll(z, -1) - z
+    side = following(z) - z
     across = (z[None, :] * (1j * side / np.abs(side))[:, None].conj()).real
     return float(np.ptp(across, axis=1).min())
 
@@ -91,7 +91,7 @@ def _joined(outline: Points, hole: Points) -> Points:
 def _nearest(corners: Points, z: Points) -> tuple[int, int, complex]:
     """Return the corner nearest to a polygon, the side nearest to this corner, and the point on this side."""
     k = int(distance(corners, z).argmin())
-    side = np.roll(z, -1) - z
+    side = following(z) - z
     along = np.clip(((corners[k] - z) * side.conj()).real / squared(side), 0.0, 1.0)
     on = z + along * side
     nearest_side = int(np.abs(corners[k] - on).argmin())
@@ -121,8 +121,8 @@ def _beside(one: Points, other: Points, tolerance: float) -> bool:
 def _middles(z: Points, other: Points) -> Points:
     """Return the midpoints of the pieces into which another polygon cuts the sides of a polygon."""
     middles = []
-    far = np.roll(other, -1) - other
-    for start, end in zip(z, np.roll(z, -1), strict=True):
+    far = following(other) - other
+    for start, end in zip(z, following(z), strict=True):
         side, away = end - start, other - start
         area = (side.conjugate() * far).imag
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -138,7 +138,7 @@ def _within(z: Points) -> complex:
     """Return a point inside a polygon: the midpoint of its longest chord on a horizontal line between two corners."""
     heights = np.unique(z.imag)
     k = int(np.diff(heights).argmax())
-    y, w = (heights[k] + heights[k + 1]) / 2, np.roll(z, -1)
+    y, w = (heights[k] + heights[k + 1]) / 2, following(z)
     spans = (z.imag > y) != (w.imag > y)
     z, w = z[spans], w[spans]
     x = np.sort(z.real + (y - z.imag) / (w - z).imag * (w - z).real)
@@ -177,7 +177,7 @@ def any_alike(z: Points, tolerance: float) -> bool:
 
 def any_meet(z: Points) -> bool:
     """Return whether two sides of a polygon cross or touch, other than neighbours at their common corner."""
-    w = np.roll(z, -1)
+    w = following(z)
     low = np.minimum(z.real, w.real) + 1j * np.minimum(z.imag, w.imag)
     high = np.maximum(z.real, w.real) + 1j * np.maximum(z.imag, w.imag)
     for i, j in nearby(low, high):

@@ -287,8 +287,7 @@ class Building(Part):
     @classmethod
     def between(cls, given: dict[str, Any], sound: Sound) -> Iterator[tuple[Place, str]]:
         """Check that levels grow, and that walls, floors, ties and all else are where others need them."""
-        levels, meant = given.get("levels"), given.get("unusual") or ()
-        walls: Any = given.get("walls")
+        levels, walls, meant = given.get("levels"), _list(given.get("walls")), given.get("unusual") or ()
         if not levels or not sound("levels"):
             return
         for k, (low, high) in enumerate(pairwise(levels), 1):
@@ -298,7 +297,7 @@ class Building(Part):
             if not USUAL_STOREY[0] <= high - low <= USUAL_STOREY[1] and "levels" not in meant:
                 guess = f"did you mean {high - low:g} cm? " if USUAL_STOREY[0] <= (high - low) / 100 <= 12 else ""
                 yield ("levels", k), f"makes storey {k} {high - low:g} m high: {guess}{_if_meant('levels')}"
-        if not all(isinstance(each, dict) and isinstance(each.get("name"), str) for each in _list(walls) or [None]):
+        if not all(isinstance(each, dict) and isinstance(each.get("name"), str) for each in walls or [None]):
             return
         strengths: Any = given.get("masonry") if isinstance(given.get("masonry"), dict) else {}
         for k, each in enumerate(_list(given.get("ties"))):

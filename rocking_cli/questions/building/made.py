@@ -34,7 +34,7 @@ from rocking_cli.questions.building.description import (
 from rocking_cli.studies.remark import Remark
 
 STRIPS = 6  # of a gable, each with its mean length: the mass is exact, the centroid 1.4 % too high
-ARCH_STRESS, ARCH_DEPTH, ARCH_RISE = 1.5, 0.1, 0.9  # of a wall that bends as an arch [EN 1996-1-1, 6.3.2]
+ARCH_THRUST, ARCH_RISE = 0.15, 1 / 1.2  # over f t and t, which give the strength f (t/L)^2 of EN 1996-1-1, 6.3.2
 MOST_SLENDER_ARCH = 20.0  # length over thickness
 MOST_ARCH_RATIO = 0.57  # g, as one rigid body of the inertia of two has at most 1/sqrt(3) as its ratio at rest
 LEAST_OVERLAP = 1e-6  # share of an overlap below which nothing of it is left
@@ -155,6 +155,11 @@ def _rounded(value: float) -> float:
     return round(value, 4) + 0.0
 
 
+def _given(**fields: Any) -> dict[str, Any]:
+    """Return the fields that are given: neither None nor an empty list."""
+    return {key: value for key, value in fields.items() if value is not None and value != []}
+
+
 def _rectangle(x0: float, x1: float, y0: float, y1: float) -> list[list[float]]:
     return [[_rounded(x), _rounded(y)] for x, y in ((x0, y0), (x1, y0), (x1, y1), (x0, y1))]
 
@@ -170,8 +175,8 @@ def _body(parts: Sequence[Strip], z: float, wedges: Sequence[Mapping[str, Any]] 
     plates = list[dict[str, Any]]()
     for each in parts:
         corners = _rectangle(outer - each.thickness, outer, each.low - z, each.high - z)
-        own = {"density": each.density} if each.density != first.density else {}
-        plates.append({"polygon": corners, "depth": _rounded(each.length), **own})
+        density = each.density if each.density != first.density else None
+        plates.append(_given(polygon=corners, depth=_rounded(each.length), density=density))
     return "rigid_body", {"parts": [*plates, *wedges], "density": first.density, "depth": depth}
 
 
@@ -187,17 +192,20 @@ def _inner(building: Building, wall: Wall, z: float, outer: float) -> float:
     return outer - wall.thick(max(storey, wall.reaches(building.count)[0] + 1))
 
 
+def _bears_at(building: Building, wall: Wall, z: float, outer: float, floor: Bearing) -> float:
+    """Return x at which a floor bears: a third of its seat from the inner face, without one the axis of the wall."""
+    inner = _inner(building, wall, z, outer)
+    return inner + floor.seat / 3 if floor.seat is not None else (inner + outer) / 2
+
+
 def _loads(building: Building, wall: Wall, z: float, outer: float, depth: float) -> list[dict[str, Any]]:
-    """Return the loads of floors and roof above a hinge: where they bear, a third of the seat from the inner face."""
+    """Return the loads of floors and roof above a hinge."""
     loads = list[dict[str, Any]]()
     for name, height, each in _seats(building, wall, z):
-        inner = _inner(building, wall, height, outer)
-        x = inner + each.seat / 3 if each.seat is not None else (inner + outer) / 2
-        at = [_rounded(x), _rounded(height - z)]
+        at = [_rounded(_bears_at(building, wall, height, outer, each)), _rounded(height - z)]
         mass = each.load if depth == wall.length else each.load * wall.length / depth
-        load = {"name": name, "mass_per_area": mass, "span": each.span, "at": at}
-        load |= {"floor": "sliding" if each.sliding else "borne"}
-        loads.append(load | ({"seat": each.seat} if each.seat is not None else {}))
+        how = "sliding" if each.sliding else "borne"
+        loads.append(_given(name=name, mass_per_area=mass, span=each.span, at=at, floor=how, seat=each.seat))
         if each.thrust:
             push = [each.thrust * wall.length / depth, 0.0]
             loads.append({"name": f"thrust of {name}", "force_per_metre": push, "at": at})
@@ -218,15 +226,16 @@ def _ties(building: Building, wall: Wall, z: float, outer: float) -> list[dict[s
             continue
         inner, m = _inner(building, wall, y, outer), building.masonry
         given = each.model_dump(exclude_unset=True, by_alias=True)
-        own = {key: value for key, value in given.items() if key not in ("name", "level", "below", "walls", "length")}
+        steel = {key: value for key, value in given.items() if key not in ("name", "level", "below", "walls", "length")}
         if each.plate is not None:
-            bearing = {"thickness": _rounded(outer - inner), "compression": m.compression, "shear": m.shear,
-                       "gamma": m.gamma, "source": m.source}  # fmt: skip
-            own["wall"] = {key: value for key, value in bearing.items() if value is not None}
+            thickness = _rounded(outer - inner)
+            steel["wall"] = _given(
+                thickness=thickness, compression=m.compression, shear=m.shear, gamma=m.gamma, source=m.source
+            )
         name = each.name if names.count(each.name) == 1 else f"{each.name} at level {each.level}"
         ends = {"from": {"ground": [_rounded(inner - each.length), _rounded(y - z)]},
                 "to": {"at": [_rounded(inner), _rounded(y - z)]}}  # fmt: skip
-        ties.append({"name": name, **ends, **own})
+        ties.append({"name": name, **ends, **steel})
     return ties
 
 
@@ -336,11 +345,11 @@ def overturning(building: Building, wall: Wall, z: float, angle: float | None = 
     kind, fields = _body(parts, z, wedges)
     outer = parts[0].thickness / 2
     depth = fields["depth"]
-    fields |= {"one_sided": "positive"} | ({"rebound": building.rebound} if building.rebound is not None else {})
-    fields |= {key: value for key, value in (
-        ("loads", _loads(building, wall, z, outer, depth)), ("ties", _ties(building, wall, z, outer)),
-        ("interlock", friction), ("crushing", _crushing(building)), ("unusual", building.unusual),
-    ) if value}  # fmt: skip
+    loads, ties = _loads(building, wall, z, outer, depth), _ties(building, wall, z, outer)
+    fields |= _given(
+        one_sided="positive", rebound=building.rebound, loads=loads, ties=ties, interlock=friction,
+        crushing=_crushing(building, parts[0], depth), unusual=building.unusual,
+    )  # fmt: skip
     held = friction is not None or bool(wedges)
     name = f"{wall.name}: overturning{'' if gable else ' without its gable'} about {z:.4g} m"
     hinge = z, max(each.high for each in parts)
@@ -386,9 +395,12 @@ def _given_angle(building: Building) -> float:
     return float(np.radians(angle)) if isinstance(angle, float | int) else 0.0
 
 
-def _crushing(building: Building) -> dict[str, float] | None:
+def _crushing(building: Building, foot: Strip | None = None, depth: float = 0.0) -> dict[str, float] | None:
+    """Return how a hinge crushes, on the length of the part above it where that is less than the depth."""
     strength = building.masonry.crushing
-    return None if strength is None else {"strength": strength}
+    if strength is None:
+        return None
+    return {"strength": strength} | ({"depth": foot.length} if foot is not None and foot.length < depth else {})
 
 
 def held_levels(building: Building, wall: Wall) -> list[int]:
@@ -421,9 +433,8 @@ def bending(building: Building, wall: Wall, foot: int, top: int) -> Made:
         for each in [*(strips(building, wall, high, above) if above > high else ()), *_on_top(building, wall)]
     ]
     for _, z, each in _seats(building, wall, low):
-        inner = _inner(building, wall, z, outer)
-        x = inner + each.seat / 3 if each.seat is not None else (inner + outer) / 2
-        weights.append((g * each.load * each.span * wall.length / 2, x))
+        at = _bears_at(building, wall, z, outer, each)
+        weights.append((g * each.load * each.span * wall.length / 2, at))
     load = sum(weight for weight, _ in weights)
     mass = sum(each.mass for each in parts)
     if load <= OF_ITS_WEIGHT * g * mass:
@@ -466,8 +477,8 @@ def _parts(building: Building, each: OnTop, low: float) -> list[Strip]:
 def arch(building: Building, wall: Wall) -> Made:
     """Return the top storey of a wall that bends horizontally, as an arch in its thickness between what confines it.
 
-    The thrust of an arch of three hinges, each of a tenth of the thickness at 1.5 times the strength, has the arm
-    0.9 t [EN 1996-1-1, 6.3.2]: 8 N r/(w L^2) = f t/(gamma L^2) nearly. It decreases with the arm, to zero at 0.9 t.
+    The thrust is that of three hinges of a tenth of the thickness at 1.5 times the strength; its arm gives the printed
+    strength f t^2/L^2 [EN 1996-1-1, 6.3.2], and decreases to zero.
 
     Raises
     ------
@@ -486,7 +497,7 @@ def arch(building: Building, wall: Wall) -> Made:
     t, span, height = wall.thick(top), confined.length or wall.length, high - low
     if span > MOST_SLENDER_ARCH * t:
         raise NotMade("slender", exists=False, length=span, most=MOST_SLENDER_ARCH)
-    thrust = ARCH_STRESS * ARCH_DEPTH * strength / (building.masonry.gamma or 1.0) * t * height
+    thrust = ARCH_THRUST * strength / (building.masonry.gamma or 1.0) * t * height
     if thrust > confined.resistance:
         raise NotMade("spread", exists=False, thrust=thrust / 1e3, resistance=confined.resistance / 1e3)
     density = wall.density or building.masonry.density
@@ -514,13 +525,14 @@ def standing(building: Building, each: OnTop, z: float | None = None) -> Made:
     low = foot if z is None else z
     parts = _parts(building, each, low)
     kind, fields = _body(parts, low)
-    if isinstance(each, Gable):  # the roof behind it holds it
-        fields |= {"one_sided": "positive"} | ({"rebound": building.rebound} if building.rebound is not None else {})
-    elif kind == "block":
-        fields["plane"] = "width"
+    leans = isinstance(each, Gable)  # the roof behind it holds it
     if isinstance(each, BellGable) and each.bells is not None:
         fields["loads"] = [{"name": "bells", "mass": each.bells, "at": [0.0, each.bells_height]}]
-    fields |= {key: value for key, value in (("crushing", _crushing(building)), ("unusual", building.unusual)) if value}
+    fields |= _given(
+        one_sided="positive" if leans else None, rebound=building.rebound if leans else None,
+        plane="width" if kind == "block" and not leans else None, unusual=building.unusual,
+        crushing=_crushing(building, parts[0], max(strip.length for strip in parts)),
+    )  # fmt: skip
     what = {"Gable": "gable", "BellGable": "bell gable"}.get(type(each).__name__, "parapet")
     name = f"{each.name or f'{what} of {each.wall}'}: overturning about {low:.4g} m"
     height = min(low, building.height)  # above the last level the motion is that of its top
@@ -578,9 +590,8 @@ def corner(building: Building, k: int, z: float, angle: float) -> Made:
             along, t = other + min((level - z) * slope, reach), -_inner(building, wall, level, 0.0)
             x = -(along / 2 + t - (each.seat / 3 if each.seat is not None else t / 2)) / sqrt(2)
             place = [_rounded(x), _rounded(level - z)]
-            load = {"name": f"{name} on {wall.name}", "mass": round(each.load * each.span * along, 3), "at": place}
-            load |= {"floor": "sliding" if each.sliding else "borne"}
-            loads.append(load | ({"seat": each.seat} if each.seat is not None else {}))
+            how, mass = "sliding" if each.sliding else "borne", round(each.load * each.span * along, 3)
+            loads.append(_given(name=f"{name} on {wall.name}", mass=mass, at=place, floor=how, seat=each.seat))
             if each.thrust:
                 push = round(each.thrust * along / sqrt(2), 3)
                 loads.append({"name": f"thrust of {name} on {wall.name}", "force": [push, 0.0], "at": place})
@@ -601,12 +612,12 @@ def corner(building: Building, k: int, z: float, angle: float) -> Made:
     rubbing = [(height, *each) for each in zip(thin, densities, reaches, strict=True)]
     if (friction := _friction(building, courses, slope, rubbing)) is not None:
         fields["interlock"] = friction
-    fields |= {key: value for key, value in (
-        ("loads", loads), ("rebound", building.rebound), ("unusual", building.unusual),
-    ) if value}  # fmt: skip
+    fields |= _given(loads=loads, rebound=building.rebound, unusual=building.unusual)
+    remarks = [Remark("edge", {})] if building.masonry.crushing is not None else []
     first, second = given.walls
     name = f"{given.name or f'corner of {first} and {second}'}: overturning about {z:.4g} m"
-    return Made("corner", first, name, z, (z, top), "rigid_body", fields, angle, given.name or "", second)
+    which = given.name or "", second
+    return Made("corner", first, name, z, (z, top), "rigid_body", fields, angle, *which, remarks=remarks)
 
 
 def with_bars(building: Building, level: int, diameter: float) -> Building:

@@ -26,6 +26,7 @@ from rocking_cli.verification.code import SiteFile
 from rocking_cli.verification.results import Histories, Verification
 
 COARSE, REFINED = 4, 8  # intervals of a search in which the least is looked for, and evaluations in the best of them
+CRACKS = 12, 8  # of angles alone, and beside heights: ratios drop where the courses slip off before the end
 SEARCHED = 32  # evaluations of a search by two arguments
 PERIOD_FACTOR = 0.05  # C1 of T1 = C1 H^(3/4), H in m
 LENGTHENED, DAMPING, LATER_DAMPING = 1.75, 0.05, 0.10  # T1 at SLV over that at SLD, and damping ratios
@@ -177,12 +178,16 @@ class Search:
         return inf if isnan(ratio) else ratio
 
     def weakest(
-        self, make: Callable[..., Made], *bounds: tuple[float, float], known: float | None = None
+        self,
+        make: Callable[..., Made],
+        *bounds: tuple[float, float],
+        cells: Sequence[int] = (COARSE,),
+        known: float | None = None,
     ) -> tuple[float, ...]:
         """Return the arguments within bounds at which a mechanism has its least ratio: a grid, then a search.
 
         The search is in the cells around the least of the grid; what is lower by less than `LOWER` is not looked for.
-        `known` is the ratio at the lower bounds.
+        `cells` are the intervals of each argument in the grid, `known` is the ratio at the lower bounds.
         """
         from scipy.optimize import minimize, minimize_scalar
 
@@ -192,7 +197,7 @@ class Search:
             except NotMade:
                 return inf
 
-        axes = [np.linspace(*each, COARSE + 1).tolist() for each in bounds]
+        axes = [np.linspace(*each, count + 1).tolist() for each, count in zip(bounds, cells, strict=True)]
         values = {place: at(*place) for place in [*product(*axes)][known is not None :]}
         if known is not None:  # at the lower ends
             values[tuple(low for low, _ in bounds)] = known
@@ -205,7 +210,7 @@ class Search:
 
         if len(bounds) == 1:
             (x,), ((low, high),) = best, bounds
-            step = (high - low) / COARSE
+            step = (high - low) / cells[0]
             if x in (low, high):  # a lower value beside an end shows at once
                 beside = x + step / 8 if x == low else x - step / 8
                 if not at(beside) < values[best] * (1 - LOWER):
@@ -216,11 +221,11 @@ class Search:
             refined: tuple[float, ...] = (float(found.x),)
         else:
             corners = [best]  # a first simplex half a cell wide, into the bounds
-            for k, (x, (low, high)) in enumerate(zip(best, bounds, strict=True)):
-                step = (high - low) / COARSE / 2 * (1 if x < (low + high) / 2 else -1)
+            for k, (x, (low, high), count) in enumerate(zip(best, bounds, cells, strict=True)):
+                step = (high - low) / count / 2 * (1 if x < (low + high) / 2 else -1)
                 corners.append((*best[:k], x + step, *best[k + 1 :]))
-            simplex: Any = {"maxfev": SEARCHED, "xatol": 1e-3, "fatol": 1e-4, "initial_simplex": corners}
-            found = minimize(lambda x: bounded(*x), best, method="Nelder-Mead", bounds=bounds, options=simplex)
+            within: dict[str, Any] = {"maxfev": SEARCHED, "xatol": 1e-3, "fatol": 1e-4, "initial_simplex": corners}
+            found = minimize(lambda x: bounded(*x), best, method="Nelder-Mead", bounds=bounds, options=within)
             refined = tuple(map(float, found.x))
         return refined if float(found.fun) < values[best] * (1 - LOWER) else best
 
@@ -244,17 +249,19 @@ class Search:
         if wall.connection == "interlock" and courses is not None and courses.angle == "weakest":
             crack = [(0.0, courses.steepest)]
         about = partial(making.overturning, building, wall)
-        at_level: tuple[float, ...] = self.weakest(partial(about, low), *crack) if crack else ()
+        at_level: tuple[float, ...] = self.weakest(partial(about, low), *crack, cells=CRACKS[:1]) if crack else ()
         name = f"{wall.name}: overturning about {low:.4g} m"
         of_level = yield from self._one(partial(about, low, *at_level), name)
         if has_gable:
             yield from self._one(partial(about, low, *at_level, gable=False), f"{name} without its gable")
-        end = high - LEAST_REST * (high - low) if is_last and not has_gable else high
+        end = high - (LEAST_REST * (high - low) if is_last else LEVEL_HEIGHT)  # below it the floor at its top acts
         known = of_level.ratio if of_level is not None and not crack else None
-        z, *angle = self.weakest(about, (low, end), *crack, known=known)
+        z, *angle = self.weakest(about, (low, end), *crack, cells=(COARSE, *CRACKS[1:])[: 1 + len(crack)], known=known)
         z = round(z, 3)
-        between = z > low + LEVEL_HEIGHT and (z < high - LEVEL_HEIGHT or (is_last and not has_gable))
-        if between and (of_level is None or self.ratio(about(z, *angle)) < (1 - LOWER) * of_level.ratio):
+        others = [] if of_level is None else [of_level.ratio]
+        if z > high - 2 * LEVEL_HEIGHT:
+            others.append(self.ratio(about(high, *angle)))
+        if z > low + LEVEL_HEIGHT and (not others or self.ratio(about(z, *angle)) < (1 - LOWER) * min(others)):
             yield from self._one(partial(about, z, *angle))
 
     def of_others(self) -> Iterator[Found | LeftOutMechanism]:
@@ -275,7 +282,9 @@ class Search:
             for level in range(max(foot for foot, _ in walls), min(top for _, top in walls)):
                 turned = partial(making.corner, building, k, building.levels[level])
                 if courses.angle == "weakest":
-                    yield from self._one(partial(turned, *self.weakest(turned, (0.0, courses.steepest))))
+                    yield from self._one(
+                        partial(turned, *self.weakest(turned, (0.0, courses.steepest), cells=CRACKS[:1]))
+                    )
                 else:
                     yield from self._one(partial(turned, radians(courses.angle)))
 

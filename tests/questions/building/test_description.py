@@ -278,12 +278,14 @@ class TestHostile:
 
     @pytest.mark.rest
     def test_what_is_read_is_assessed_or_refused(self):
-        """Of files that are read in spite of a strange value, every thirtieth."""
-        every = [(place, value) for place in places(yaml.safe_load(HOUSE)) for value in BAD]
-        read = [house for place, value in every[::30] if (house := self.tried(spoilt(place, value))) is not None]
+        """Of files that are read in spite of a strange value, every fourth, without what takes a search of angles."""
+        strange = (REMOVED, 0, 1, 2, 1e9, 1e-300, [])
+        every = [(place, value) for place in places(yaml.safe_load(HOUSE)) for value in strange]
+        read = [house for place, value in every if (house := self.tried(spoilt(place, value))) is not None][::4]
         assert len(read) > 3
         for house in read:
             try:
-                assess(house.model_copy(update={"gables": [], "corners": []}), site_of(SITE))
+                walls = [each.model_copy(update={"connection": "none"}) for each in house.walls]
+                assess(house.model_copy(update={"walls": walls, "corners": []}), site_of(SITE))
             except RockingError as error:
                 assert str(error)

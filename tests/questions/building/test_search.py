@@ -13,7 +13,7 @@ from rocking_cli.io.json_text import json_text
 from rocking_cli.io.yaml_file import parse
 from rocking_cli.questions.building.description import building_of
 from rocking_cli.questions.building.made import NotMade, bending, corner, held_levels, overturning, standing
-from rocking_cli.questions.building.study import LOWER, Search, assess
+from rocking_cli.questions.building.study import CRACKS, LOWER, Search, assess
 from tests.conftest import EXAMPLES
 
 TOLERANCE = LOWER + 1e-3  # of the search, and of heights that it rounds to millimetres
@@ -178,11 +178,26 @@ class TestLeast:
         house = building({**CROSSED, "gables": []})
         search, wall = Search(house, site_of(SITE)), house.walls[2]
         steepest = house.interlock.steepest
-        (angle,) = search.weakest(partial(overturning, house, wall, z), (0.0, steepest))
+        (angle,) = search.weakest(partial(overturning, house, wall, z), (0.0, steepest), cells=CRACKS[:1])
         least = min(
             zeta(search, partial(overturning, house, wall, z, a)) for a in np.linspace(0, steepest, 10).tolist()
         )
         assert zeta(search, partial(overturning, house, wall, z, angle)) <= least * (1 + TOLERANCE)
+
+    def test_the_angle_from_which_on_courses_slip_off(self):
+        """Of this wall the ratio drops from 1.277 to 1.171 at 0.273 rad; a flat valley at 0.086 has 1.241."""
+        walls = [
+            {"name": "front", "length": 5.88, "thickness": 0.54, "sides": ["left"], "connection": "interlock",
+             "openings": [{"storey": 1, "x": 1, "z": 0.27, "width": 1.88, "height": 2.05}]},
+            {"name": "left", "length": 5.0, "thickness": 0.45},
+        ]  # fmt: skip
+        house = building({"levels": [0.0, 3.4], "masonry": MASONRY, "walls": walls,
+                          "interlock": {"course": 0.3, "overlap": 0.16}})  # fmt: skip
+        search = Search(house, site_of(SITE))
+        make = partial(overturning, house, house.walls[0], 0.0)
+        (angle,) = search.weakest(make, (0.0, house.interlock.steepest), cells=CRACKS[:1])
+        least = min(zeta(search, partial(make, a)) for a in np.linspace(0, house.interlock.steepest, 49).tolist())
+        assert zeta(search, partial(make, angle)) <= least * (1 + TOLERANCE)
 
     @pytest.mark.parametrize(
         ("bounds", "valley"),
@@ -194,16 +209,18 @@ class TestLeast:
         search = Search(building(PLAIN), site_of(SITE))
         widths = [high - low for low, high in bounds]
         monkeypatch.setattr(Search, "ratio", lambda self, x: 1 + sum(((a - b) / w) ** 2 for a, b, w in x))
-        found = search.weakest(lambda *x: list(zip(x, valley, widths, strict=True)), *bounds)
+        found = search.weakest(
+            lambda *x: list(zip(x, valley, widths, strict=True)), *bounds, cells=(4, 8)[: len(bounds)]
+        )
         assert sum(((a - b) / w) ** 2 for a, b, w in zip(found, valley, widths, strict=True)) < 2 * LOWER
 
     @pytest.mark.rest
     def test_all_of_a_small_building(self):
-        """Sixty heights a storey; twenty angles at twelve heights of walls that interlock."""
+        """Sixty heights a storey; twenty angles at six heights of walls that interlock."""
         check({**CROSSED, "walls": [{**each, "connection": "none"} for each in CROSSED["walls"]]}, 60, 20)
-        check(CROSSED, 12, 20)
+        check(CROSSED, 6, 20)
 
     @pytest.mark.rest
-    @pytest.mark.parametrize("seed", range(12))
+    @pytest.mark.parametrize("seed", range(6))
     def test_random_buildings(self, seed):
-        check(random_house(seed), 12, 9)
+        check(random_house(seed), 8, 6)
