@@ -221,10 +221,14 @@ class BellGable(OnTop):
         """Check that bells hang somewhere."""
         if (given.get("bells") is None) != (given.get("bells_height") is None):
             yield ("bells_height",), "bells have a mass and a height: give both"
-        openings, height = given.get("openings"), given.get("height")
-        for k, each in enumerate(_list(openings) if sound("height") and height is not None else ()):
-            if sound("openings", k) and (end := each["z"] + each["height"]) > height:
-                yield ("openings", k), f"ends {end:g} m above the foot of a gable {height:g} m high"
+        within = ("z", "height", "above the foot", "high"), ("x", "width", "from the left end", "long")
+        openings = _list(given.get("openings")) if sound("openings") else []
+        for k, each in enumerate(openings):
+            for (at, size, where, what), key in zip(within, ("height", "length"), strict=True):
+                if sound(key) and (end := each[at] + each[size]) > _number(given.get(key), inf):
+                    yield ("openings", k), f"ends {end:g} m {where} of a gable {given[key]:g} m {what}"
+            if any(_overlap(each, other) for other in openings[:k]):
+                yield ("openings", k), "overlaps another opening of the gable"
 
 
 class WallCorner(Part):
@@ -324,7 +328,7 @@ def _list(value: Any) -> list[Any]:
 
 def _number(value: Any, otherwise: float = 0.0) -> float:
     """Return a number that may be wrong or left out, then as another one."""
-    return value if isinstance(value, float | int) else otherwise
+    return float(max(-1e300, min(value, 1e300))) if isinstance(value, float | int) else otherwise
 
 
 def _if_meant(name: str) -> str:
@@ -395,7 +399,15 @@ def _of_wall(
 def _overlap(one: Mapping[str, Any], other: Mapping[str, Any]) -> bool:
     sides = (("x", "width"), ("z", "height"))
     pairs = ((one, other), (other, one))
-    return one["storey"] == other["storey"] and all(a[at] < b[at] + b[size] for at, size in sides for a, b in pairs)
+    return one.get("storey") == other.get("storey") and all(
+        a[at] < b[at] + b[size] for at, size in sides for a, b in pairs
+    )
+
+
+def _thick(wall: Mapping[str, Any], k: int) -> float:
+    """Return the thickness of a wall in a storey, from 0 at its foot [m]; infinite if it is wrong."""
+    thick = wall.get("thickness")
+    return _number((thick[k] if k < len(thick) else None) if isinstance(thick, list) else thick, inf)
 
 
 def _known(name: str, named: Mapping[str, Any]) -> str:
@@ -418,7 +430,18 @@ def _of_what_bears(given: Mapping[str, Any], named: Mapping[str, Any]) -> Iterat
             elif not (reach := _reach(named[name], count))[0] < level <= reach[1]:
                 what = f"the wall {name} goes from level {reach[0]} to {reach[1]}, and does not reach level {level}"
                 yield (*place, "walls", k), what
+            elif _number(part.get("seat")) > (thick := _thick(named[name], level - 1 - reach[0])):
+                yield (*place, "seat"), f"is more than the thickness of {name} below it, {thick:g} m"
 
+    borne: list[tuple[Place, Any]] = [(("roof",), given.get("roof"))]
+    borne += [((key, k), part) for key in ("floors", "ties") for k, part in enumerate(_list(given.get(key)))]
+    taken = set[tuple[str, ...]]()
+    for place, part in borne:
+        for wall in dict.fromkeys(map(str, _list(part.get("walls")))) if isinstance(part, dict) else ():
+            called = part.get("name", "tie" if place[0] == "ties" else "roof")
+            if (mark := (wall, str(called), str(place[0] == "ties" and part.get("level")))) in taken:
+                yield (*place, "name"), f"is that of another on {wall}: give each a name of its own"
+            taken.add(mark)
     for key in ("floors", "ties"):
         for k, each in enumerate(_list(given.get(key))):
             if isinstance(each, dict) and isinstance(each.get("level"), int):
@@ -451,6 +474,10 @@ def _of_what_bears(given: Mapping[str, Any], named: Mapping[str, Any]) -> Iterat
                 yield ("corners", k, "walls", m), f"there is no wall called {name}: {_known(name, named)}"
             elif name in each["walls"][:m]:
                 yield ("corners", k, "walls", m), f"is {name} again: a corner is of two walls"
+            elif m and (other := named.get(str(each["walls"][0]))) is not None:
+                reaches = _reach(named[name], count), _reach(other, count)
+                if max(foot for foot, _ in reaches) >= min(top for _, top in reaches):
+                    yield ("corners", k, "walls", m), f"has no storey in common with {other['name']}"
         if not given.get("interlock"):
             yield ("corners", k), "needs `interlock` of the building: without it the walls overturn each for itself"
 
@@ -462,7 +489,7 @@ def _of_tie(tie: Mapping[str, Any], given: Mapping[str, Any], named: Mapping[str
         yield ("below",), "is more than the height of the storey: name the level next above it"
     plate = tie.get("plate") if isinstance(tie.get("plate"), dict) else {}
     half = _number((plate or {}).get("height")) / 2
-    gabled = {each.get("wall") for each in _list(given.get("gables")) if isinstance(each, dict)}
+    gabled = [each.get("wall") for each in _list(given.get("gables")) if isinstance(each, dict)]
     for name in (each for each in _list(tie.get("walls")) if isinstance(each, str) and each in named):
         is_top = level == _reach(named[name], len(levels) - 1)[1] and name not in gabled
         if is_top and below < half:
@@ -517,6 +544,8 @@ def _in_english(document: Document) -> None:
             for key, each in value.items():
                 if (name := fields.get(key, key)) in english:
                     document.problems.append(document.at((*place, key), f"is {name}, which is given too", key=True))
+                if name == "unusual":
+                    each = [fields.get(word, word) if isinstance(word, str) else word for word in _list(each)] or each
                 english[name] = each if name in NAMING and not _has_parts(each) else of(each, (*place, key))
             return english
         if isinstance(value, list):

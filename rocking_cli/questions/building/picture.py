@@ -125,7 +125,8 @@ def _add(axes: Axes, patch: Any, colour: str) -> None:
 def _draw_mechanisms(axes: Axes, wall: Wall, rows: Sequence[tuple[int, Found]]) -> None:
     """Draw hinges as lines, and spans that bend as arrows, each with its rank and its ratio, the worst on top."""
     taken: list[float] = []
-    span = max(row.made.hinge[1] for _, row in rows) - min(row.made.hinge[0] for _, row in rows)
+    heights = [z for _, row in rows for z in row.made.hinge]
+    gap = max(0.07 * (max(heights) - min(heights)), 0.04 * wall.length)  # of a line of text in a panel
     for k, (rank, row) in enumerate(rows):
         made, end = row.made, row.conclusion.concluded
         colour, (low, high) = COLOURS.get(end, style.RANKS[0]), made.hinge
@@ -150,8 +151,8 @@ def _draw_mechanisms(axes: Axes, wall: Wall, rows: Sequence[tuple[int, Found]]) 
         else:
             axes.plot([0.0, wall.length], [low, low], **look)
             at = low
-        while any(abs(at - other) < 0.045 * span for other in taken):
-            at += 0.045 * span
+        while any(abs(at - other) < gap for other in taken):
+            at += gap
         taken.append(at)
         text = f"{rank}: {number(row.ratio, 3)}"
         bold: dict[str, Any] = {"fontsize": style.TICK, "fontweight": "bold"} if k == 0 else {"fontsize": style.SMALL}

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise, product
-from math import ceil, inf, isnan, nan, radians
+from math import ceil, inf, isclose, isnan, nan, radians
 from typing import Any, NamedTuple, get_args
 
 import numpy as np
@@ -36,6 +36,7 @@ LEAST_GABLE = 0.2  # the same of a gable
 OF_WALLS = ("overturning", "bending", "arch")  # kinds of mechanisms of walls themselves
 LEVEL_HEIGHT = 0.01  # m; a weakest hinge this near a level is that of the level
 FAR_ABOVE = 10.0  # times the least ratio of a grid; a search has any larger one as this
+FINE = Concluded.SATISFIED, Concluded.SATISFIED_IF
 LOWER = 1e-3  # share by which a hinge between levels must be weaker to be listed beside them
 
 
@@ -141,8 +142,8 @@ class Assessed:
         end = self.governs.conclusion
         if any(each.falls for each in self.left_out):
             return replace(end, concluded=Concluded.NOT_SATISFIED, ratio=0.0, method="", limit_state="", limits=[])
-        fine = end.concluded in (Concluded.SATISFIED, Concluded.SATISFIED_IF)
-        return replace(end, concluded=Concluded.NOT_CHECKED) if fine and any(e.open for e in self.left_out) else end
+        is_open = end.concluded in FINE and any(each.open for each in self.left_out)
+        return replace(end, concluded=Concluded.NOT_CHECKED, method="") if is_open else end  # the next step is not its
 
 
 def floor_of(building: Building, site: SiteFile, z: float) -> SiteFile:
@@ -269,9 +270,10 @@ class Search:
             crack = [(0.0, courses.steepest)]
         about = partial(making.overturning, building, wall)
         at_level: tuple[float, ...] = self.weakest(partial(about, low), *crack, cells=CRACKS[:1]) if crack else ()
-        of_level = yield from self._one(partial(about, low, *at_level))
+        title = Remark.of("overturning", wall=wall.name, z=low)
+        of_level = yield from self._one(partial(about, low, *at_level), title)
         if has_gable:
-            yield from self._one(partial(about, low, *at_level, gable=False))
+            yield from self._one(partial(about, low, *at_level, gable=False), title._replace(key="overturning_without"))
         end = high - (LEAST_REST * (high - low) if is_last else LEVEL_HEIGHT)  # below it the floor at its top acts
         cells = (max(COARSE, ceil((high - low) / CELL)), *CRACKS[1:])
         known = of_level.ratio if of_level is not None and not crack else None
@@ -288,7 +290,7 @@ class Search:
         building = self.building
         for each in (*building.gables, *building.parapets, *building.bell_gables):
             about = partial(making.standing, building, each)
-            at_foot = yield from self._one(about)
+            at_foot = yield from self._one(about, Remark.of("standing", wall=each.wall))
             if each in building.gables and at_foot is not None:
                 low, high = at_foot.made.hinge
                 (z,) = self.weakest(about, (low, high - LEAST_GABLE * (high - low)), known=at_foot.ratio)
@@ -317,7 +319,7 @@ class Search:
             yield LeftOutMechanism(title or Remark.of("part_of_building"), why.why, why.exists)
         except (InputError, MechanismError, SolverError) as error:
             assert title is not None  # it was made
-            yield LeftOutMechanism(title, str(error), open=True, falls=_falls(error))
+            yield LeftOutMechanism(title, _why(error), open=True, falls=_falls(error))
         else:
             yield verified
             return verified
@@ -327,6 +329,13 @@ def _falls(error: Exception) -> bool:
     """Return whether a structure does not stand under its loads, as an error says."""
     problems = error.problems if isinstance(error, InputError) else []
     return any(each.field in ("loads", "ties") for each in problems)
+
+
+def _why(error: Exception) -> str:
+    """Return the first problem of an error as a clause, without the line of a file, and how many more there are."""
+    problems = error.problems if isinstance(error, InputError) else [Problem(str(error))]
+    lines = str(replace(problems[0], excerpt=None)).splitlines()
+    return "; ".join(map(str.strip, lines)) + f" (and {len(problems) - 1} more)" * (len(problems) > 1)
 
 
 def mechanisms(search: Search, first: int, stop: int) -> list[Found | LeftOutMechanism]:
@@ -385,6 +394,11 @@ def ranked(rows: Sequence[Found]) -> list[Found]:
     return sorted(rows, key=lambda each: [-float(f"{x:.9g}") for x in severity(each.conclusion)])
 
 
+def known_last(ratio: float) -> tuple[bool, float]:
+    """Return a key by which the least ratio is the first, after those that are not known."""
+    return (False, 0.0) if isnan(ratio) else (True, ratio)
+
+
 def shaken(found: Assessed, worst: int, sets: Mapping[str | None, Histories]) -> Assessed:
     """Return a building whose worst mechanisms are verified by time histories too.
 
@@ -408,6 +422,12 @@ def shaken(found: Assessed, worst: int, sets: Mapping[str | None, Histories]) ->
     if missing := [each.made.name for each in rows[:worst] if each.structure.restitution_source == "missing"]:
         hint = "give `rebound` in the building: a measured rate after an impact over that before, from 0 to below 1"
         raise InputError(Problem(f"is missing: {missing[0]} leans on the building", field="rebound", hint=hint))
+    floor: Any = getattr(found.site.site, "floor", None)
+    away = [each.made for each in rows[:worst] if floor is not None and not isclose(each.made.z, floor.z)]
+    if away and any(each.on_floor for each in sets.values()):
+        what = f"is of motions at {floor.z:g} m, and {away[0].name} is shaken at {away[0].z:g} m"
+        hint = f"verify that mechanism by itself: {named('structures')} writes it"
+        raise InputError(Problem(what, field=named("on_floor"), hint=hint))
     for k, each in enumerate(rows[:worst]):
         result, place = each.verification, floor_of(found.building, found.site, each.made.z)
         for histories in sets.values():
@@ -441,17 +461,20 @@ class BarsTried(NamedTuple):
     diameter : float
         Diameter [m].
     ratio : float
-        Least ratio of the mechanisms that the ties hold.
+        Ratio of the worst mechanism that the ties hold; NaN if it is not known.
     title : Remark
-        The mechanism that has it.
+        This mechanism.
     satisfied : bool
-        Whether all these mechanisms satisfy the code.
+        Whether all that they hold satisfies the code.
+    concluded : Concluded
+        The conclusion on the worst.
     """
 
     diameter: float
     ratio: float
     title: Remark
     satisfied: bool
+    concluded: Concluded
 
 
 @short_repr
@@ -503,7 +526,8 @@ def bars_of_level(found: Assessed, level: int, progress: Callable[[int], object]
         If the level has no ties.
     """
     building, tried = found.building, list[BarsTried]()
-    names = {each.name for each in building.ties if each.level == level}
+    ties = [each.name for each in building.ties if each.level == level]
+    names = {*ties, *(f"{name} at level {level}" for name in ties)}
     held = [wall for wall in building.walls if any(wall.name in e.walls for e in building.ties if e.level == level)]
     if not held:
         levels = sorted({each.level for each in building.ties})
@@ -513,23 +537,22 @@ def bars_of_level(found: Assessed, level: int, progress: Callable[[int], object]
         search = Search(making.with_bars(building, level, diameter), found.site)
         every = [each for wall in held for each in search.of_wall(wall)]
         rows = [each for each in every if isinstance(each, Found)]
-        tied = [row for row in rows if any(_of(names, tie["name"]) for tie in row.made.fields.get("ties", ()))]
+        tied = [row for row in rows if any(tie["name"] in names for tie in row.made.fields.get("ties", ()))]
         progress(1)
         if falling := [each for each in every if isinstance(each, LeftOutMechanism) and each.falls]:
-            tried.append(BarsTried(diameter, 0.0, falling[0].title, satisfied=False))
+            tried.append(BarsTried(diameter, 0.0, falling[0].title, False, Concluded.NOT_SATISFIED))
             continue
         if not tied:
             raise InputError(Problem(f"the ties of level {level} hold no mechanism that can be verified"))
         worst = ranked(tied)[0]
-        satisfied = worst.conclusion.concluded in (Concluded.SATISFIED, Concluded.SATISFIED_IF)
-        tried.append(BarsTried(diameter, min(row.ratio for row in tied), worst.made.title, satisfied))
-        if satisfied:
+        end = worst.conclusion.concluded
+        tried.append(BarsTried(diameter, worst.ratio, worst.made.title, end in FINE, end))
+        if end in FINE:
             break
     again = {wall.name for wall in held}
     others = [row for row in found.rows if row.made.wall not in again or row.made.kind not in OF_WALLS]
-    whole = ranked([*rows, *others])[0]
-    return BarsOfLevel(level, tried, whole.conclusion, whole.made.title)
-
-
-def _of(names: Iterable[str], name: str) -> bool:
-    return any(name == each or name.startswith(f"{each} at level ") for each in names)
+    titles = [row.made.title for row in rows]
+    left_out = [each for each in every if isinstance(each, LeftOutMechanism)]
+    left_out += [each for each in found.left_out if each.title not in titles]
+    whole = replace(found, rows=ranked([*rows, *others]), left_out=left_out)
+    return BarsOfLevel(level, tried, whole.conclusion, whole.governs.made.title)

@@ -57,7 +57,7 @@ def building(asked: BuildingAsked, watch: Watcher) -> Answer[Assessed]:
     from rocking_cli.core.hung.ties import BAR_DIAMETERS
     from rocking_cli.questions.building.description import one_sided_toothing
     from rocking_cli.questions.building.study import NoMechanism, assess, bars_of_level, compared, shaken
-    from rocking_cli.questions.building.view import columns, view, words
+    from rocking_cli.questions.building.view import columns, reasons, view, words
     from rocking_cli.verification.check import refuse
 
     given, folder = _read(asked.building, watch)
@@ -83,7 +83,8 @@ def building(asked: BuildingAsked, watch: Watcher) -> Answer[Assessed]:
             result = examined(given, progress=advance)
             after = None if other is None else examined(other, progress=advance)
     except NoMechanism as error:
-        raise InputError(*(Problem(f"{say(each.title)}: {say(each.why)}") for each in error.args[0])) from None
+        why = reasons(error.args[0], words("en")).items()
+        raise InputError(*(Problem(f"{', '.join(names)}: {reason}") for reason, names in why)) from None
     if requested:
         with watch.progress(asked.worst * (1 if after is None else 2), "mechanisms under motions"):
             result = shaken(result, asked.worst, _histories(asked, result, watch))
@@ -169,4 +170,4 @@ def _write_structures(folder: Path, found: Assessed, watch: Watcher) -> None:
     csv.writer(table, lineterminator="\n").writerows(lines)
     texts["mechanisms.csv"] = table.getvalue().encode()
     write_folder(folder, texts)
-    watch.note(f"wrote {len(found.rows)} structures into {folder}: `rocking survey mechanisms.csv` reads them")
+    watch.note(f"wrote {len(found.rows)} structures into {folder}: `rocking survey {folder}/mechanisms.csv` reads them")

@@ -18,11 +18,13 @@ from rocking_cli.questions.building.study import (
     Assessed,
     BarsOfLevel,
     Found,
+    LeftOutMechanism,
     floor_of,
+    known_last,
 )
 from rocking_cli.studies.conclusion import Concluded, Effect
 from rocking_cli.views.column import Column, data_of, frame_of, of, only_shown, table_of
-from rocking_cli.views.conclusion import conclusion_data, limit_in_words, of_verification
+from rocking_cli.views.conclusion import conclusion_data, limit_in_words, not_counted, of_verification
 from rocking_cli.views.sheet.language import Language, texts_of, translated
 from rocking_cli.views.verification import showing
 from rocking_cli.views.view import Aside, Table, View
@@ -103,12 +105,12 @@ def view(found: Assessed, designed: BarsOfLevel | None, say: Language) -> View:
         title = say("designed", level=designed.level)
         columns = (
             only_shown("bars", of("diameter"), lambda diameter: f"{1000 * diameter:.0f} mm"),
-            only_shown("least ratio", of("ratio")),
+            only_shown("ratio", of("ratio")),
             only_shown("mechanism", of("title"), say, text=True),
         )
         parts += [table_of(title, columns, designed.tried), *designed_in_words(designed, say)]
-    parts += [*conditions(found.strengthened or found, say), *notes(found, say)]
-    return translated(say, View(lambda: data(found, designed, say), parts))
+    parts += [*conditions(found, say), *notes(found, say)]
+    return translated(say, View(lambda: data(found, designed), parts))
 
 
 def verdict(found: Assessed, say: Language) -> Iterator[str]:
@@ -151,29 +153,42 @@ def _some(names: Iterable[str], say: Language) -> str:
 
 def notes(found: Assessed, say: Language) -> Iterator[str]:
     """Yield what is not verified, how the motion of the building was taken, and what such a verification leaves out."""
-    for each in found.left_out:
-        if each.open:
-            yield say("open", name=each.title, why=say(each.why))
-    why: dict[str, list[str]] = {}
-    for each in found.left_out:
-        if not each.open:
-            why.setdefault(say(each.why), []).append(say(each.title))
-    for reason, names in why.items():
+    yield from _of_rows(found, say)
+    for reason, names in reasons((each for each in found.left_out if not each.open), say).items():
         yield Aside(say("not_made", names=_some(names, say), why=reason))
-    for row in found.rows:
-        for remark in row.made.remarks:
-            yield f"{say(row.made.title)}: {say(remark)}."
     if any(row.made.z > 0 for row in found.rows) and getattr(found.site.site, "floor", None) is None:
         source = say("period_given" if found.period_given else "period_formula", T=found.period)
         damped = {"xi": 100 * LATER_DAMPING, "first": 100 * DAMPING}
         later = {"T": LENGTHENED * found.period, "factor": LENGTHENED, **damped}
         yield say("period", source=source, **later)
-    if found.shaken:
-        names = [say(row.made.title) for row in found.rows if row.made.name in found.shaken]
-        yield say("shaken", names=", ".join(names))
+    if found.strengthened is not None:
+        for text in (*conditions(found.strengthened, say), *_of_rows(found.strengthened, say)):
+            yield say("of_strengthened", text=text)
     if found.building.masonry.crushing is None:
         yield say("unlimited")
     yield say("covers")
+
+
+def reasons(left_out: Iterable[LeftOutMechanism], say: Language) -> dict[str, list[str]]:
+    """Return the names of mechanisms that are not verified, by the reason."""
+    of: dict[str, list[str]] = {}
+    for each in left_out:
+        of.setdefault(say(each.why), []).append(say(each.title))
+    return of
+
+
+def _of_rows(found: Assessed, say: Language) -> Iterator[str]:
+    """Yield what could not be verified, what structures leave out, and which motions were followed and count."""
+    for reason, names in reasons((each for each in found.left_out if each.open), say).items():
+        yield say("open", name=", ".join(names), why=reason)
+    for row in found.rows:
+        for remark in row.made.remarks:
+            yield f"{say(row.made.title)}: {say(remark)}."
+    if rows := [row for row in found.rows if row.made.name in found.shaken]:
+        others = say("shaken_others") if len(rows) < len(found.rows) else ""
+        yield say("shaken", names=", ".join(say(row.made.title) for row in rows), others=others)
+        left_out = dict.fromkeys(each for row in rows for each in row.conclusion.left_out if each.what == "motion")
+        yield from not_counted([*left_out], code_words(found, say))
 
 
 def compared(found: Assessed, other: Assessed, say: Language) -> Table:
@@ -182,31 +197,31 @@ def compared(found: Assessed, other: Assessed, say: Language) -> Table:
     for after, rows in enumerate((found.rows, other.rows)):
         for row in rows:
             of_both = least.setdefault((row.made.wall, row.made.kind), {})
-            of_both[bool(after)] = min(row.ratio, of_both.get(bool(after), row.ratio))
+            of_both[bool(after)] = min(row.ratio, of_both.get(bool(after), row.ratio), key=known_last)
     cells = [(wall, say(f"kind_{kind}"), both.get(False), both.get(True)) for (wall, kind), both in least.items()]
     heads = ("wall", "kind", "existing", "strengthened")
     columns = [only_shown(head, itemgetter(k), text=k < 2) for k, head in enumerate(heads)]
-    return table_of(say("compared"), columns, sorted(cells, key=lambda row: row[2] or row[3] or 0.0))
+    return table_of(
+        say("compared"), columns, sorted(cells, key=lambda row: known_last(row[3] if row[2] is None else row[2]))
+    )
 
 
 def designed_in_words(found: BarsOfLevel, say: Language) -> Iterator[str]:
     """Yield which bars suffice for the ties of a level, and what governs the building with them."""
     last, level = found.tried[-1], found.level
-    key = "no_bars" if found.diameter is None else "bars_suffice"
-    yield say(key, level=level, diameter=1000 * last.diameter, name=last.title)
+    yield say(f"bars_{last.concluded.value}", level=level, diameter=1000 * last.diameter, name=last.title)
     if found.whole.concluded not in (Concluded.SATISFIED, Concluded.SATISFIED_IF):
         yield say("still", name=found.governs, verdict=say(f"short_{found.whole.concluded.value}"))
 
 
-def data(found: Assessed, designed: BarsOfLevel | None, say: Language) -> dict[str, Any]:
+def data(found: Assessed, designed: BarsOfLevel | None) -> dict[str, Any]:
     """Return a building with its mechanisms as plain data."""
-    mechanisms = []
-    for row in ranked(found, say):
+    mechanisms, english = list[dict[str, Any]](), words("en")
+    for row in ranked(found, english):
         made = row.found.made
         structure = {"mechanism": made.mechanism, "name": made.name, **made.fields}
         end = conclusion_data(row.found.conclusion)
         mechanisms.append({**data_of(COLUMNS, row), "conclusion": end, "structure": structure})
-    english = words("en")
     plain: dict[str, Any] = {
         "building": found.building.name, "site": found.site.site.name, "conclusion": conclusion_data(found.conclusion),
         "governs": found.governs.made.name, "T1": found.period, "mechanisms": mechanisms,
@@ -220,7 +235,7 @@ def data(found: Assessed, designed: BarsOfLevel | None, say: Language) -> dict[s
         ends = {"conclusion": conclusion_data(designed.whole), "governs": english(designed.governs)}
         plain["designed"] = {"level": designed.level, "diameter": designed.diameter, "tried": tried, **ends}
     if found.strengthened is not None:
-        plain["strengthened"] = data(found.strengthened, None, say)
+        plain["strengthened"] = data(found.strengthened, None)
     return plain
 
 

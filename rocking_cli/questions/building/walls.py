@@ -17,6 +17,8 @@ COLUMNS = {"name": "", "storey": "", "thickness": "m", "height": "m", "length": 
            "density": "kg/m3"}  # fmt: skip
 REQUIRED = ("name", "storey", "thickness", "height", "length")
 ITALIAN = {"storeys": "storey", "porta": "bears", "solaio": "bears"}
+TWO = {"length": "lengths", "density": "densities"}  # what a wall has one of
+MAX_STOREYS = 199
 SAME_HEIGHT = 0.01  # m, by which the heights of walls in a storey may differ
 USUAL_DENSITY = "18 kN/m3"
 Cells = Mapping[int, Mapping[str, Any]]
@@ -48,18 +50,17 @@ def building_in(sheet: Spreadsheet) -> dict[str, Any]:
     for row in sheet.rows:
         there = {name: (row.cells[k], unit) for name, (k, unit) in places.items() if row.cells[k]}
         given = {name: _value(sheet, row.line, name, *each) for name, each in there.items()}
-        needed = (*REQUIRED, "span") if "bears" in given else REQUIRED
+        needed = [*REQUIRED, *["span"] * ("bears" in given), *["density"] * ("density" in places)]
         if lacking := [each for each in needed if each not in given]:
             raise InputError(Problem("is missing", sheet.file, row.line, field=lacking[0]))
         storey, rows = given["storey"], walls.setdefault(given["name"], {})
         if abs(heights.setdefault(storey, given["height"]) - given["height"]) > SAME_HEIGHT:
             what = f"is {given['height']:g} m, but storey {storey} is {heights[storey]:g} m high in rows above"
             raise InputError(Problem(what, sheet.file, row.line, field="height", hint="give each storey one height"))
-        if storey in rows or any(each["length"] != given["length"] for each in rows.values()):
-            what = (
-                f"{given['name']} has storey {storey} twice" if storey in rows else f"{given['name']} has two lengths"
-            )
-            hint = "give a wall of another length another name, and name what carries it"
+        two = [key for key in TWO if any(each.get(key) != given.get(key) for each in rows.values())]
+        if storey in rows or two:
+            what = f"{given['name']} has " + (f"storey {storey} twice" if storey in rows else f"two {TWO[two[0]]}")
+            hint = "give a wall of another length or density another name, and name what carries it"
             raise InputError(Problem(what, sheet.file, row.line, hint=hint))
         rows[storey] = given
     for name, storeys in {"the building": [*heights], **{name: [*rows] for name, rows in walls.items()}}.items():
@@ -96,8 +97,10 @@ def _value(sheet: Spreadsheet, line: int, name: str, cell: str, unit: str) -> An
         value = read(text, COLUMNS[name]) if value is None else value
     except UnitError as error:
         raise InputError(Problem(error.message, sheet.file, line, field=name, hint=error.hint)) from None
-    if name == "storey" and (value < 1 or not value.is_integer()):
-        raise InputError(Problem(f"must be a whole number from 1, got {cell}", sheet.file, line, field=name))
+    if name == "storey" and not (1 <= value <= MAX_STOREYS and value.is_integer()):
+        raise InputError(
+            Problem(f"must be a whole number from 1 to {MAX_STOREYS}, got {cell}", sheet.file, line, field=name)
+        )
     return int(value) if name == "storey" else value
 
 
