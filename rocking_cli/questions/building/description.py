@@ -42,7 +42,7 @@ class Hole(Part):
     height: float = length("its height", example=1.4)
 
 
-class Opening(Hole):
+class WallOpening(Hole):
     """An opening in a storey of a wall."""
 
     storey: int = quantity("storey in which it is, 1 at the foot", example=1, ge=1, le=200)
@@ -109,7 +109,7 @@ class Confinement(Part):
     length: float | None = length("distance between what resists; if omitted, the length of the wall", default=None)
 
 
-class Wall(Part):
+class BuildingWall(Part):
     """A wall, seen from outside: it overturns outwards."""
 
     refused: ClassVar[Mapping[str, str]] = dict.fromkeys(
@@ -129,7 +129,7 @@ class Wall(Part):
     )
     on: Name | None = Field(None, description="what carries a wall that does not begin at the foundation")
     density: float | None = quantity("density, if not that of the masonry", unit="kg/m3", default=None, gt=0, le=1e6)
-    openings: list[Opening] = Field([], max_length=1000, description="its openings")
+    openings: list[WallOpening] = Field([], max_length=1000, description="its openings")
     sides: list[Name] = Field([], max_length=2, description="walls that it meets at its ends")
     connection: Literal["none", "interlock", "ties"] = Field("none", description="how they hold it")
     confined: Confinement | None = Field(None, description="what resists its thrust as a horizontal arch, if anything")
@@ -255,7 +255,7 @@ class Building(Part):
     )
     masonry: Masonry = Field(description="its masonry")
     interlock: Courses | None = Field(None, description="how its walls interlock")
-    walls: Annotated[list[Wall], Field(min_length=1, max_length=MAX_WALLS)] = Field(description="its walls")
+    walls: Annotated[list[BuildingWall], Field(min_length=1, max_length=MAX_WALLS)] = Field(description="its walls")
     floors: list[BuildingFloor] = Field([], max_length=MAX_WALLS, description="its floors")
     roof: Bearing | None = Field(None, description="its roof, at the last level")
     ties: list[BuildingTie] = Field([], max_length=MAX_WALLS, description="its ties")
@@ -279,7 +279,7 @@ class Building(Part):
         return self.levels[-1]
 
     @cached_property
-    def wall(self) -> Mapping[str, Wall]:
+    def wall(self) -> Mapping[str, BuildingWall]:
         """The walls by their names."""
         return {each.name: each for each in self.walls}
 

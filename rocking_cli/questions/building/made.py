@@ -29,7 +29,7 @@ from rocking_cli.questions.building.description import (
     Gable,
     Hole,
     OnTop,
-    Wall,
+    BuildingWall,
 )
 from rocking_cli.studies.remark import Remark
 
@@ -75,7 +75,7 @@ class Strip(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Made:
+class MadeMechanism:
     """A mechanism of a building.
 
     Parameters
@@ -138,7 +138,7 @@ def _registry() -> Registry:
     return Registry()
 
 
-def strips(building: Building, wall: Wall, low: float, high: float) -> list[Strip]:
+def strips(building: Building, wall: BuildingWall, low: float, high: float) -> list[Strip]:
     """Return the parts of a wall between two heights [m], shortened by openings. Raises `NotMade` if one has none."""
     levels, (foot, _) = building.levels, wall.reaches(building.count)
     holes = [(levels[each.storey - 1] + each.z, each) for each in wall.openings]
@@ -187,25 +187,25 @@ def _body(parts: Sequence[Strip], z: float, wedges: Sequence[Mapping[str, Any]] 
     return "rigid_body", {"parts": [*plates, *wedges], "density": first.density, "depth": depth}
 
 
-def _seats(building: Building, wall: Wall, low: float) -> list[tuple[str, float, Bearing]]:
+def _seats(building: Building, wall: BuildingWall, low: float) -> list[tuple[str, float, Bearing]]:
     """Return name, height and floor of what bears on a wall above a height [m]."""
     of = [(name, building.levels[level], each) for name, level, each in building.bearing if wall.name in each.walls]
     return [each for each in of if low < each[1]]
 
 
-def _inner(building: Building, wall: Wall, z: float, outer: float) -> float:
+def _inner(building: Building, wall: BuildingWall, z: float, outer: float) -> float:
     """Return x of the inner face just below a height [m]."""
     storey = int(np.searchsorted(building.levels, z))
     return outer - wall.thick(max(storey, wall.reaches(building.count)[0] + 1))
 
 
-def _bears_at(building: Building, wall: Wall, z: float, outer: float, floor: Bearing) -> float:
+def _bears_at(building: Building, wall: BuildingWall, z: float, outer: float, floor: Bearing) -> float:
     """Return x at which a floor bears: a third of its seat from the inner face, without one the axis of the wall."""
     inner = _inner(building, wall, z, outer)
     return inner + floor.seat / 3 if floor.seat is not None else (inner + outer) / 2
 
 
-def _loads(building: Building, wall: Wall, z: float, outer: float, depth: float) -> list[dict[str, Any]]:
+def _loads(building: Building, wall: BuildingWall, z: float, outer: float, depth: float) -> list[dict[str, Any]]:
     """Return the loads of floors and roof above a hinge."""
     loads = list[dict[str, Any]]()
     for name, height, each in _seats(building, wall, z):
@@ -224,7 +224,7 @@ def tie_height(building: Building, tie: BuildingTie) -> float:
     return building.levels[tie.level] - tie.below
 
 
-def _ties(building: Building, wall: Wall, z: float, outer: float) -> list[dict[str, Any]]:
+def _ties(building: Building, wall: BuildingWall, z: float, outer: float) -> list[dict[str, Any]]:
     """Return the ties of a wall above a hinge."""
     ties, names = list[dict[str, Any]](), [each.name for each in building.ties]
     for each in building.ties:
@@ -247,7 +247,7 @@ def _ties(building: Building, wall: Wall, z: float, outer: float) -> list[dict[s
 
 
 def _sides(
-    building: Building, wall: Wall, z: float, high: float, angle: float
+    building: Building, wall: BuildingWall, z: float, high: float, angle: float
 ) -> tuple[list[dict[str, Any]], dict[str, Any] | None]:
     """Return the wedges of side walls that come along, cracked at an angle [rad], and the friction of their courses.
 
@@ -256,7 +256,7 @@ def _sides(
     courses = building.interlock
     if wall.connection != "interlock" or courses is None:
         return [], None
-    crossing = list[tuple[float, Wall]]()  # height above the hinge
+    crossing = list[tuple[float, BuildingWall]]()  # height above the hinge
     thickness, slope, reach = wall.thick(_storey(building, wall, z)), tan(angle), courses.reach or inf
     for side in map(building.wall.__getitem__, wall.sides):
         low, top = side.reaches(building.count)
@@ -282,17 +282,17 @@ def _sides(
     return wedges, _friction(building, courses, slope, rubbing)
 
 
-def _density(building: Building, wall: Wall) -> float:
+def _density(building: Building, wall: BuildingWall) -> float:
     return wall.density or building.masonry.density
 
 
-def _steps(building: Building, wall: Wall, z: float) -> set[float]:
+def _steps(building: Building, wall: BuildingWall, z: float) -> set[float]:
     """Return the heights above a hinge at which a wall may change its thickness [m]."""
     top = building.levels[wall.reaches(building.count)[1]]
     return {y - z for y in building.levels if z < y < top} if isinstance(wall.thickness, list) else set()
 
 
-def _thinnest(building: Building, wall: Wall, z: float) -> float:
+def _thinnest(building: Building, wall: BuildingWall, z: float) -> float:
     """Return the least thickness of a wall above a hinge [m], on which less weight rubs than on others."""
     return min(wall.thick(each) for each in range(_storey(building, wall, z), wall.reaches(building.count)[1] + 1))
 
@@ -321,18 +321,20 @@ def _friction(
             "friction": courses.friction, "height": _rounded(most * courses.course), "density": density}  # fmt: skip
 
 
-def _storey(building: Building, wall: Wall, z: float) -> int:
+def _storey(building: Building, wall: BuildingWall, z: float) -> int:
     """Return the storey of a wall at and above a height; below it its first, above it its last."""
     foot, top = wall.reaches(building.count)
     return min(max(foot + 1, bisect_right(building.levels, z)), top)
 
 
-def overturning(building: Building, wall: Wall, z: float, angle: float | None = None, *, gable: bool = True) -> Made:
+def overturning(
+    building: Building, wall: BuildingWall, z: float, angle: float | None = None, *, gable: bool = True
+) -> MadeMechanism:
     """Return a wall that overturns about a hinge at a height [m], with what stands on it and what comes along.
 
     Parameters
     ----------
-    building, wall : Building, Wall
+    building, wall : Building, BuildingWall
     z : float
         Height of the hinge above the foundation [m].
     angle : float, optional
@@ -362,7 +364,7 @@ def overturning(building: Building, wall: Wall, z: float, angle: float | None = 
     hinge = z, max(each.high for each in parts)
     if wedges:
         fields = _by_its_numbers(fields, outer)
-    return Made(
+    return MadeMechanism(
         "overturning", wall.name, name, z, hinge, kind, fields, crack if held else None, without_gable=not gable
     )
 
@@ -410,7 +412,7 @@ def _crushing(building: Building, foot: Strip | None = None, depth: float = 0.0)
     return {"strength": strength} | ({"depth": foot.length} if foot is not None and foot.length < depth else {})
 
 
-def held_levels(building: Building, wall: Wall) -> list[int]:
+def held_levels(building: Building, wall: BuildingWall) -> list[int]:
     """Return the levels at which a wall is held sideways: its foot, floors that do not slide, and ties."""
     foot, top = wall.reaches(building.count)
     floors = {level for _, level, each in building.bearing if wall.name in each.walls and not each.sliding}
@@ -418,7 +420,7 @@ def held_levels(building: Building, wall: Wall) -> list[int]:
     return [foot, *sorted(level for level in floors | ties if foot < level <= top)]
 
 
-def bending(building: Building, wall: Wall, foot: int, top: int) -> Made:
+def bending(building: Building, wall: BuildingWall, foot: int, top: int) -> MadeMechanism:
     """Return a wall that bends vertically between two levels that hold it, under what stands above.
 
     Raises
@@ -456,10 +458,10 @@ def bending(building: Building, wall: Wall, foot: int, top: int) -> Made:
         free: Any = _registry()["spanning_wall"].from_fields(fields)
         weaker = min(Direction, key=free.uplift)
         fields |= {"hinge": round(free.hinges(weaker)[1].imag / (high - low), 6), "crushing": crushing}
-    return Made("bending", wall.name, name, (low + high) / 2, (low, high), "spanning_wall", fields)
+    return MadeMechanism("bending", wall.name, name, (low + high) / 2, (low, high), "spanning_wall", fields)
 
 
-def _on_top(building: Building, wall: Wall, *, gable: bool = True) -> list[Strip]:
+def _on_top(building: Building, wall: BuildingWall, *, gable: bool = True) -> list[Strip]:
     """Return the parts of what stands on a wall."""
     parts, foot = list[Strip](), building.levels[wall.reaches(building.count)[1]]
     for each in (*(building.gables if gable else ()), *building.parapets, *building.bell_gables):
@@ -481,7 +483,7 @@ def _parts(building: Building, each: OnTop, low: float) -> list[Strip]:
     return _pierced(Strip(foot, foot + each.height, thickness, length, density), getattr(each, "openings", []))
 
 
-def arch(building: Building, wall: Wall) -> Made:
+def arch(building: Building, wall: BuildingWall) -> MadeMechanism:
     """Return the top storey of a wall that bends horizontally, as an arch in its thickness between what confines it.
 
     The thrust is that of three hinges of a tenth of the thickness at 1.5 times the strength; its arm gives the printed
@@ -517,10 +519,10 @@ def arch(building: Building, wall: Wall) -> Made:
               "centroid_height": span / 4, "mass": round(mass, 3),
               "inertia": round(mass * span**2 / 12, 3)}  # fmt: skip
     name = f"{wall.name}: horizontal arch above {low:.4g} m"
-    return Made("arch", wall.name, name, (low + high) / 2, (low, high), "curve", fields, remarks=remarks)
+    return MadeMechanism("arch", wall.name, name, (low + high) / 2, (low, high), "curve", fields, remarks=remarks)
 
 
-def standing(building: Building, each: OnTop, z: float | None = None) -> Made:
+def standing(building: Building, each: OnTop, z: float | None = None) -> MadeMechanism:
     """Return what stands on a wall as it turns about its foot, or a gable about a higher hinge at `z` [m].
 
     Raises
@@ -544,7 +546,7 @@ def standing(building: Building, each: OnTop, z: float | None = None) -> Made:
     name = f"{each.name or f'{what} of {each.wall}'}: overturning about {low:.4g} m"
     height = min(low, building.height)  # above the last level the motion is that of its top
     hinge, key = (low, foot + each.height), what.replace(" ", "_")
-    return Made(key, each.wall, name, height, hinge, kind, fields, part=each.name or "")
+    return MadeMechanism(key, each.wall, name, height, hinge, kind, fields, part=each.name or "")
 
 
 def _pierced(whole: Strip, openings: Sequence[Hole]) -> list[Strip]:
@@ -559,7 +561,7 @@ def _pierced(whole: Strip, openings: Sequence[Hole]) -> list[Strip]:
     return parts
 
 
-def corner(building: Building, k: int, z: float, angle: float) -> Made:
+def corner(building: Building, k: int, z: float, angle: float) -> MadeMechanism:
     """Return a corner that turns outwards along its diagonal about a height [m], by cracks at an angle [rad].
 
     The plane is that of the diagonal, x = 0 at the outer edge. Where the walls meet is a column; of each wall the wedge
@@ -607,7 +609,7 @@ def corner(building: Building, k: int, z: float, angle: float) -> Made:
         loads.append({"name": "hip rafter", "force": [given.thrust, 0.0], "at": place})
     whole = sum(mass for mass, _, _ in pieces)
     centroid = sum(mass * at for mass, at, _ in pieces) / whole
-    inertia = sum(own + mass * abs(at - centroid) ** 2 for mass, at, own in pieces)
+    inertia = sum(of_piece + mass * abs(at - centroid) ** 2 for mass, at, of_piece in pieces)
     fields: dict[str, Any] = {
         "mass": round(whole, 3), "inertia": round(inertia, 3),
         "centroid": [_rounded(centroid.real), _rounded(centroid.imag)],
@@ -624,7 +626,7 @@ def corner(building: Building, k: int, z: float, angle: float) -> Made:
     first, second = given.walls
     name = f"{given.name or f'corner of {first} and {second}'}: overturning about {z:.4g} m"
     which = given.name or "", second
-    return Made("corner", first, name, z, (z, top), "rigid_body", fields, angle, *which, remarks=remarks)
+    return MadeMechanism("corner", first, name, z, (z, top), "rigid_body", fields, angle, *which, remarks=remarks)
 
 
 def with_bars(building: Building, level: int, diameter: float) -> Building:

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 
 from rocking_cli.plotting import style
-from rocking_cli.questions.building.description import Building, Wall
+from rocking_cli.questions.building.description import Building, BuildingWall
 from rocking_cli.questions.building.made import held_levels, tie_height
 from rocking_cli.questions.building.study import Assessed, Found
 from rocking_cli.studies.conclusion import Concluded
@@ -79,7 +79,7 @@ def _panels(count: int, pairs: int) -> tuple[Figure, list[Axes]]:
     return figure, every
 
 
-def _draw_elevation(axes: Axes, building: Building, wall: Wall, *, named: bool = False) -> None:
+def _draw_elevation(axes: Axes, building: Building, wall: BuildingWall, *, named: bool = False) -> None:
     """Draw a wall from outside: its storeys and openings, what stands on it, and the heights of its levels."""
     foot, top = wall.reaches(building.count)
     levels, right = building.levels, wall.length
@@ -122,7 +122,7 @@ def _add(axes: Axes, patch: Any, colour: str) -> None:
     axes.add_patch(patch)
 
 
-def _draw_mechanisms(axes: Axes, wall: Wall, rows: Sequence[tuple[int, Found]]) -> None:
+def _draw_mechanisms(axes: Axes, wall: BuildingWall, rows: Sequence[tuple[int, Found]]) -> None:
     """Draw hinges as lines, and spans that bend as arrows, each with its rank and its ratio, the worst on top."""
     taken: list[float] = []
     heights = [z for _, row in rows for z in row.made.hinge]
@@ -159,7 +159,7 @@ def _draw_mechanisms(axes: Axes, wall: Wall, rows: Sequence[tuple[int, Found]]) 
         axes.text(1.02 * wall.length, at, text, color=colour, va="center", path_effects=style.HALO, zorder=6, **bold)
 
 
-def _draw_section(axes: Axes, building: Building, wall: Wall, say: Say) -> None:
+def _draw_section(axes: Axes, building: Building, wall: BuildingWall, say: Say) -> None:
     """Draw the section of a wall, outside to the right: thicknesses, floors with their loads, thrusts, and ties."""
     foot, top = wall.reaches(building.count)
     levels = building.levels

@@ -15,8 +15,8 @@ from rocking_cli.core.hung.ties import BAR_DIAMETERS
 from rocking_cli.dynamics.parallel import in_processes
 from rocking_cli.errors import InputError, MechanismError, Problem, SolverError, named
 from rocking_cli.questions.building import made as making
-from rocking_cli.questions.building.description import Building, Wall
-from rocking_cli.questions.building.made import Made, NotMade
+from rocking_cli.questions.building.description import Building, BuildingWall
+from rocking_cli.questions.building.made import MadeMechanism, NotMade
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Concluded, Conclusion, severity
@@ -25,7 +25,10 @@ from rocking_cli.verification.check import code_of, verify, with_histories
 from rocking_cli.verification.code import SiteFile
 from rocking_cli.verification.results import Histories, Verification
 
-COARSE, REFINED = 4, 8  # intervals of a search in which the least is looked for, and evaluations in the best of them
+FIRST_CELLS, REFINED = (
+    4,
+    8,
+)  # intervals of a search in which the least is looked for, and evaluations in the best of them
 CRACKS = 12, 8  # of angles alone, and beside heights: ratios drop where the courses slip off before the end
 CELL = 1.0  # m, of which storeys that are higher have more intervals
 SEARCHED = 32  # evaluations of a search by two arguments
@@ -36,7 +39,7 @@ LEAST_GABLE = 0.2  # the same of a gable
 OF_WALLS = ("overturning", "bending", "arch")  # kinds of mechanisms of walls themselves
 LEVEL_HEIGHT = 0.01  # m; a weakest hinge this near a level is that of the level
 FAR_ABOVE = 10.0  # times the least ratio of a grid; a search has any larger one as this
-FINE = Concluded.SATISFIED, Concluded.SATISFIED_IF
+HOLDS = Concluded.SATISFIED, Concluded.SATISFIED_IF
 LOWER = 1e-3  # share by which a hinge between levels must be weaker to be listed beside them
 
 
@@ -47,7 +50,7 @@ class Found:
 
     Parameters
     ----------
-    made : Made
+    made : MadeMechanism
         How it was made.
     structure : Structure
         The structure.
@@ -55,7 +58,7 @@ class Found:
         Its verification, at the height of its hinge.
     """
 
-    made: Made
+    made: MadeMechanism
     structure: Structure
     verification: Verification
 
@@ -142,7 +145,7 @@ class Assessed:
         end = self.governs.conclusion
         if any(each.falls for each in self.left_out):
             return replace(end, concluded=Concluded.NOT_SATISFIED, ratio=0.0, method="", limit_state="", limits=[])
-        is_open = end.concluded in FINE and any(each.open for each in self.left_out)
+        is_open = end.concluded in HOLDS and any(each.open for each in self.left_out)
         return replace(end, concluded=Concluded.NOT_CHECKED, method="") if is_open else end  # the next step is not its
 
 
@@ -175,18 +178,18 @@ def first_period(building: Building) -> float:
 
 
 @dataclass(frozen=True)
-class Search:
+class MechanismSearch:
     """The mechanisms of a building at a site."""
 
     building: Building
     site: SiteFile
 
-    def verified(self, made: Made) -> Found:
+    def verified(self, made: MadeMechanism) -> Found:
         """Return a mechanism with its verification. Raises `InputError` or `MechanismError`."""
         structure = Structure(made.structure())
         return Found(made, structure, verify(structure, floor_of(self.building, self.site, made.z)))
 
-    def ratio(self, made: Made) -> float:
+    def ratio(self, made: MadeMechanism) -> float:
         """Return capacity over demand of a mechanism: none if it falls at rest; infinite if it cannot be verified."""
         try:
             ratio = self.verified(made).ratio
@@ -198,9 +201,9 @@ class Search:
 
     def weakest(
         self,
-        make: Callable[..., Made],
+        make: Callable[..., MadeMechanism],
         *bounds: tuple[float, float],
-        cells: Sequence[int] = (COARSE,),
+        cells: Sequence[int] = (FIRST_CELLS,),
         known: float | None = None,
     ) -> tuple[float, ...]:
         """Return the arguments within bounds at which a mechanism has its least ratio: a grid, then a search.
@@ -236,19 +239,19 @@ class Search:
                     return best
             ends = max(low, x - step), min(high, x + step)
             stops = {"maxiter": REFINED, "xatol": 0.01 * step}
-            found = minimize_scalar(bounded, bounds=ends, method="bounded", options=stops)
-            refined: tuple[float, ...] = (float(found.x),)
+            ended = minimize_scalar(bounded, bounds=ends, method="bounded", options=stops)
+            refined: tuple[float, ...] = (float(ended.x),)
         else:
             corners = [best]  # a first simplex half a cell wide, into the bounds
             for k, (x, (low, high), count) in enumerate(zip(best, bounds, cells, strict=True)):
                 step = (high - low) / count / 2 * (1 if x < (low + high) / 2 else -1)
                 corners.append((*best[:k], x + step, *best[k + 1 :]))
             within: dict[str, Any] = {"maxfev": SEARCHED, "xatol": 1e-3, "fatol": 1e-4, "initial_simplex": corners}
-            found = minimize(lambda x: bounded(*x), best, method="Nelder-Mead", bounds=bounds, options=within)
-            refined = tuple(map(float, found.x))
-        return refined if float(found.fun) < values[best] * (1 - LOWER) else best
+            ended = minimize(lambda x: bounded(*x), best, method="Nelder-Mead", bounds=bounds, options=within)
+            refined = tuple(map(float, ended.x))
+        return refined if float(ended.fun) < values[best] * (1 - LOWER) else best
 
-    def of_wall(self, wall: Wall) -> Iterator[Found | LeftOutMechanism]:
+    def of_wall(self, wall: BuildingWall) -> Iterator[Found | LeftOutMechanism]:
         """Yield the mechanisms of a wall."""
         building = self.building
         foot, top = wall.reaches(building.count)
@@ -260,7 +263,7 @@ class Search:
         title = Remark.of("arch", wall=wall.name, z=building.levels[top - 1])
         yield from self._one(partial(making.arch, building, wall), title)
 
-    def _overturning(self, wall: Wall, level: int, *, is_last: bool) -> Iterator[Found | LeftOutMechanism]:
+    def _overturning(self, wall: BuildingWall, level: int, *, is_last: bool) -> Iterator[Found | LeftOutMechanism]:
         """Yield a wall that overturns about a level, also without its gable, and about a weaker hinge above it."""
         building, courses = self.building, self.building.interlock
         low, high = building.levels[level : level + 2]
@@ -275,7 +278,7 @@ class Search:
         if has_gable:
             yield from self._one(partial(about, low, *at_level, gable=False), title._replace(key="overturning_without"))
         end = high - (LEAST_REST * (high - low) if is_last else LEVEL_HEIGHT)  # below it the floor at its top acts
-        cells = (max(COARSE, ceil((high - low) / CELL)), *CRACKS[1:])
+        cells = (max(FIRST_CELLS, ceil((high - low) / CELL)), *CRACKS[1:])
         known = of_level.ratio if of_level is not None and not crack else None
         z, *angle = self.weakest(about, (low, end), *crack, cells=cells[: 1 + len(crack)], known=known)
         z = round(z, 3)
@@ -309,7 +312,7 @@ class Search:
                 else:
                     yield from self._one(partial(turned, radians(courses.angle)))
 
-    def _one(self, make: Callable[[], Made], title: Remark | None = None) -> Any:
+    def _one(self, make: Callable[[], MadeMechanism], title: Remark | None = None) -> Any:
         """Yield a mechanism with its verification, or why there is none; return it, or None."""
         try:
             made = make()
@@ -338,7 +341,7 @@ def _why(error: Exception) -> str:
     return "; ".join(map(str.strip, lines)) + f" (and {len(problems) - 1} more)" * (len(problems) > 1)
 
 
-def mechanisms(search: Search, first: int, stop: int) -> list[Found | LeftOutMechanism]:
+def mechanisms(search: MechanismSearch, first: int, stop: int) -> list[Found | LeftOutMechanism]:
     """Return the mechanisms of some walls; of those after the last wall, those of corners and what stands on walls."""
     walls = search.building.walls
     tasks = [search.of_wall(wall) for wall in walls[first:stop]] + [search.of_others()] * (stop > len(walls))
@@ -370,7 +373,7 @@ def assess(
     NoMechanism
         If no mechanism can be verified.
     """
-    search, count = Search(building, site), len(building.walls) + 1
+    search, count = MechanismSearch(building, site), len(building.walls) + 1
     parts: dict[int, list[Found | LeftOutMechanism]] = {}
     if processes is not None:
         for first, part in in_processes(partial(mechanisms, search), count, 1, processes):
@@ -534,7 +537,7 @@ def bars_of_level(found: Assessed, level: int, progress: Callable[[int], object]
         hint = f"levels with ties: {', '.join(map(str, levels))}" if levels else "add ties to the building"
         raise InputError(Problem(f"level {level} has no ties", field=named("design"), hint=hint))
     for diameter in BAR_DIAMETERS:
-        search = Search(making.with_bars(building, level, diameter), found.site)
+        search = MechanismSearch(making.with_bars(building, level, diameter), found.site)
         every = [each for wall in held for each in search.of_wall(wall)]
         rows = [each for each in every if isinstance(each, Found)]
         tied = [row for row in rows if any(tie["name"] in names for tie in row.made.fields.get("ties", ()))]
@@ -546,8 +549,8 @@ def bars_of_level(found: Assessed, level: int, progress: Callable[[int], object]
             raise InputError(Problem(f"the ties of level {level} hold no mechanism that can be verified"))
         worst = ranked(tied)[0]
         end = worst.conclusion.concluded
-        tried.append(BarsTried(diameter, worst.ratio, worst.made.title, end in FINE, end))
-        if end in FINE:
+        tried.append(BarsTried(diameter, worst.ratio, worst.made.title, end in HOLDS, end))
+        if end in HOLDS:
             break
     again = {wall.name for wall in held}
     others = [row for row in found.rows if row.made.wall not in again or row.made.kind not in OF_WALLS]

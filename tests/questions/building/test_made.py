@@ -27,7 +27,7 @@ from rocking_cli.questions.building.made import (
     strips,
     with_bars,
 )
-from rocking_cli.questions.building.study import Search, assess, first_period, floor_of
+from rocking_cli.questions.building.study import MechanismSearch, assess, first_period, floor_of
 from rocking_cli.questions.building.view import words
 from rocking_cli.structure import Structure
 from rocking_cli.verification.check import verify
@@ -136,7 +136,7 @@ class TestWalls:
         house = building([wall, self.PLAIN])
         typed = rk.Block(width=0.3, height=3.0, depth=5.0, density=1200.0, one_sided="positive")
         same(house, overturning(house, house.walls[0], 3.0), typed, 3.0)
-        first = next(Search(house, site_of(SITE))._overturning(house.walls[0], 1, is_last=True))
+        first = next(MechanismSearch(house, site_of(SITE))._overturning(house.walls[0], 1, is_last=True))
         assert first.made.z == 3.0
 
     def test_the_top_of_a_wall_has_its_last_thickness(self):
@@ -638,7 +638,7 @@ class TestHeights:
         roof = {"load": 200.0, "span": 5.0, "walls": ["w"], "sliding": True, "thrust": 1300.0}
         house = building([wall], roof=roof, levels=[0.0, 3.0])
         with pytest.raises(InputError, match="cannot stand under them"):
-            Search(house, site_of(SITE)).verified(overturning(house, house.walls[0], 1.0))
+            MechanismSearch(house, site_of(SITE)).verified(overturning(house, house.walls[0], 1.0))
         answer = assess(house, site_of(SITE))
         assert any(each.open and "cannot stand under them" in each.why for each in answer.left_out)
 

@@ -13,7 +13,7 @@ from rocking_cli.io.json_text import json_text
 from rocking_cli.io.yaml_file import parse
 from rocking_cli.questions.building.description import building_of
 from rocking_cli.questions.building.made import NotMade, bending, corner, held_levels, overturning, standing
-from rocking_cli.questions.building.study import CRACKS, LOWER, Search, assess
+from rocking_cli.questions.building.study import CRACKS, LOWER, MechanismSearch, assess
 from tests.conftest import EXAMPLES
 
 TOLERANCE = LOWER + 1e-3  # of the search, and of heights that it rounds to millimetres
@@ -126,7 +126,7 @@ def random_house(seed):
 def check(fields, heights, angles):
     """Assert that no mechanism is weaker than the weakest that is named; return all that was found."""
     house = building(fields)
-    search = Search(house, site_of(SITE))
+    search = MechanismSearch(house, site_of(SITE))
     answer = assess(house, search.site)
     least, what = least_of_all(search, heights, angles)
     weakest = min(answer.rows, key=lambda each: each.ratio)
@@ -176,7 +176,7 @@ class TestLeast:
     def test_a_crack_of_side_walls(self, z):
         """The weakest angle about a level, against ten of them."""
         house = building({**CROSSED, "gables": []})
-        search, wall = Search(house, site_of(SITE)), house.walls[2]
+        search, wall = MechanismSearch(house, site_of(SITE)), house.walls[2]
         steepest = house.interlock.steepest
         (angle,) = search.weakest(partial(overturning, house, wall, z), (0.0, steepest), cells=CRACKS[:1])
         least = min(
@@ -193,7 +193,7 @@ class TestLeast:
         ]  # fmt: skip
         house = building({"levels": [0.0, 3.4], "masonry": MASONRY, "walls": walls,
                           "interlock": {"course": 0.3, "overlap": 0.16}})  # fmt: skip
-        search = Search(house, site_of(SITE))
+        search = MechanismSearch(house, site_of(SITE))
         make = partial(overturning, house, house.walls[0], 0.0)
         (angle,) = search.weakest(make, (0.0, house.interlock.steepest), cells=CRACKS[:1])
         least = min(zeta(search, partial(make, a)) for a in np.linspace(0, house.interlock.steepest, 49).tolist())
@@ -206,9 +206,9 @@ class TestLeast:
     )  # fmt: skip
     def test_a_valley(self, bounds, valley, monkeypatch):
         """Of a made-up ratio with one least value within the bounds."""
-        search = Search(building(PLAIN), site_of(SITE))
+        search = MechanismSearch(building(PLAIN), site_of(SITE))
         widths = [high - low for low, high in bounds]
-        monkeypatch.setattr(Search, "ratio", lambda self, x: 1 + sum(((a - b) / w) ** 2 for a, b, w in x))
+        monkeypatch.setattr(MechanismSearch, "ratio", lambda self, x: 1 + sum(((a - b) / w) ** 2 for a, b, w in x))
         found = search.weakest(
             lambda *x: list(zip(x, valley, widths, strict=True)), *bounds, cells=(4, 8)[: len(bounds)]
         )
