@@ -164,7 +164,7 @@ class RigidBody(SingleBody):
             if foot_is_cut(foot, holes, ROUNDING_OVERLAP * size_of(self._corners)):
                 raise geometry_error(description, f"an opening takes away its foot at x = {foot.real:.4g} m")
         self._check_centroid(description)
-        for direction in Direction:
+        for direction in self.directions:
             if self.limit(direction) <= self.alpha(direction):
                 raise geometry_error(
                     description,

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
-from math import inf, sqrt, tan
+from math import floor, inf, sqrt, tan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,11 +25,11 @@ from rocking_cli.questions.building.description import (
     BellGable,
     Building,
     BuildingTie,
+    BuildingWall,
     Courses,
     Gable,
     Hole,
     OnTop,
-    BuildingWall,
 )
 from rocking_cli.studies.remark import Remark
 
@@ -257,13 +257,13 @@ def _sides(
     if wall.connection != "interlock" or courses is None:
         return [], None
     crossing = list[tuple[float, BuildingWall]]()  # height above the hinge
-    thickness, slope, reach = wall.thick(_storey(building, wall, z)), tan(angle), courses.reach or inf
+    thickness, slope, reach = wall.thick(_storey(building, wall, z)), tan(angle), inf
     for side in map(building.wall.__getitem__, wall.sides):
         low, top = side.reaches(building.count)
         height = min(building.levels[top], high) - z
         if height > 0 and building.levels[low] <= z:
             crossing.append((height, side))
-            reach = min(reach, max(side.length - thickness, 0.0))
+            reach = min(reach, _reach(building, side, thickness, z))
     inner, wedges = -thickness / 2, list[dict[str, Any]]()
     cuts = {0.0, *(height for height, _ in crossing)} | {y for _, side in crossing for y in _steps(building, side, z)}
     for foot, head in pairwise(sorted(cuts)) if slope and reach else ():
@@ -282,6 +282,18 @@ def _sides(
     return wedges, _friction(building, courses, slope, rubbing)
 
 
+def _reach(building: Building, side: BuildingWall, crossing: float, z: float) -> float:
+    """Return what can come along of a wall beyond a crossing one of a thickness, above a hinge [m]: up to an opening.
+
+    Which of its ends meets the crossing wall is not known, so the opening nearest to either end counts.
+    """
+    opened = [each for each in side.openings if building.levels[each.storey - 1] + each.z + each.height > z]
+    ends = [side.length, *(end for each in opened for end in (each.x, side.length - each.x - each.width))]
+    given = building.interlock.reach if building.interlock is not None else None
+    reach = side.length - crossing if given is not None else min(ends) - crossing
+    return max(min(reach, given or inf), 0.0)
+
+
 def _density(building: Building, wall: BuildingWall) -> float:
     return wall.density or building.masonry.density
 
@@ -295,6 +307,18 @@ def _steps(building: Building, wall: BuildingWall, z: float) -> set[float]:
 def _thinnest(building: Building, wall: BuildingWall, z: float) -> float:
     """Return the least thickness of a wall above a hinge [m], on which less weight rubs than on others."""
     return min(wall.thick(each) for each in range(_storey(building, wall, z), wall.reaches(building.count)[1] + 1))
+
+
+def joints(building: Building, wall: BuildingWall) -> list[float]:
+    """Return the heights of the bed joints of a wall that interlocks, courses down from where it meets another [m]."""
+    courses, levels = building.interlock, building.levels
+    if wall.connection != "interlock" or courses is None:
+        return []
+    foot, top = (levels[level] for level in wall.reaches(building.count))
+    tops = {min(levels[building.wall[name].reaches(building.count)[1]], top) for name in wall.sides}
+    counts = [(each, range(1, floor((each - foot) / courses.course) + 1)) for each in tops]
+    # Rounded down, so that no course is lost by a rounding.
+    return sorted({floor(1e3 * (each - n * courses.course) + 1e-6) / 1e3 for each, rows in counts for n in rows})
 
 
 def _friction(
@@ -349,7 +373,7 @@ def overturning(
     """
     top = building.levels[wall.reaches(building.count)[1]]
     parts = [*strips(building, wall, z, top), *_on_top(building, wall, gable=gable)]
-    crack = angle if angle is not None else _given_angle(building)
+    crack = angle if angle is not None else given_angle(building)
     wedges, friction = _sides(building, wall, z, top, crack)
     kind, fields = _body(parts, z, wedges)
     outer = parts[0].thickness / 2
@@ -357,22 +381,24 @@ def overturning(
     loads, ties = _loads(building, wall, z, outer, depth), _ties(building, wall, z, outer)
     fields |= _given(
         one_sided="positive", rebound=building.rebound, loads=loads, ties=ties, interlock=friction,
-        crushing=_crushing(building, parts[0], depth), unusual=building.unusual,
+        crushing=_crushing(building, parts[0], depth), unusual=_meant(building, friction),
     )  # fmt: skip
     held = friction is not None or bool(wedges)
     name = f"{wall.name}: overturning{'' if gable else ' without its gable'} about {z:.4g} m"
     hinge = z, max(each.high for each in parts)
-    if wedges:
-        fields = _by_its_numbers(fields, outer)
+    stand = [each for each in (*building.gables, *building.parapets, *building.bell_gables) if each.wall == wall.name]
+    if wedges or len(stand) > 1:
+        fields = _by_its_numbers(fields, outer, beside=len(stand) > 1)
     return MadeMechanism(
         "overturning", wall.name, name, z, hinge, kind, fields, crack if held else None, without_gable=not gable
     )
 
 
-def _by_its_numbers(fields: dict[str, Any], outer: float) -> dict[str, Any]:
+def _by_its_numbers(fields: dict[str, Any], outer: float, *, beside: bool) -> dict[str, Any]:
     """Return the fields of a wall whose wedges have its centroid behind its foot: it leans on the building at rest.
 
     A body by its parts must stand on its foot; one by its numbers has a left foot as far behind as the wedges go.
+    Of things beside each other on a wall the parts would overlap: they are by their numbers too.
     """
     plates = [[complex(*corner) for corner in each["polygon"]] for each in fields["parts"]]
     weighs = [each.get("density", fields["density"]) * each["depth"] for each in fields["parts"]]
@@ -380,7 +406,8 @@ def _by_its_numbers(fields: dict[str, Any], outer: float) -> dict[str, Any]:
     bodies = [polygon("part", 1.0, corners) for corners in plates]
     whole = sum(masses)
     centroid = sum(mass * each.centroid for mass, each in zip(masses, bodies, strict=True)) / whole
-    if centroid.real > min(each.real for each in plates[0]):
+    inner = min(each.real for each in plates[0])
+    if (stands := centroid.real > inner) and not beside:
         return fields
     inertia = sum(m * (b.inertia + abs(b.centroid - centroid) ** 2) for m, b in zip(masses, bodies, strict=True))
     top, behind = max(each.imag for each in plates[0]), min(each.real for corners in plates for each in corners)
@@ -388,7 +415,7 @@ def _by_its_numbers(fields: dict[str, Any], outer: float) -> dict[str, Any]:
     numbers: dict[str, Any] = {
         "mass": round(whole, 3), "inertia": round(inertia, 3),
         "centroid": [_rounded(centroid.real), _rounded(centroid.imag)],
-        "left_foot": [behind, 0.0], "right_foot": [_rounded(outer), 0.0], "depth": fields["depth"],
+        "left_foot": [inner if stands else behind, 0.0], "right_foot": [_rounded(outer), 0.0], "depth": fields["depth"],
         "polygon": [[plates[0][0].real, 0.0], [outer, 0.0], [outer, max(top, high)], [behind, high]],
     }  # fmt: skip
     return numbers | {key: value for key, value in fields.items() if key not in ("parts", "density", "depth")}
@@ -399,7 +426,13 @@ def _area(corners: Sequence[complex]) -> float:
     return abs(sum((p.conjugate() * q).imag for p, q in pairwise([*corners, corners[0]]))) / 2
 
 
-def _given_angle(building: Building) -> float:
+def _meant(building: Building, friction: Mapping[str, Any] | None) -> list[str] | None:
+    """Return the fields whose unusual values are meant: also the thickness of courses, which only stand for others."""
+    return building.unusual if friction is None else [*(building.unusual or ()), "interlock.thickness"]
+
+
+def given_angle(building: Building) -> float:
+    """Return the angle of cracks that the file gives [rad]; 0 if they are searched."""
     angle = building.interlock.angle if building.interlock is not None else 0.0
     return float(np.radians(angle)) if isinstance(angle, float | int) else 0.0
 
@@ -420,15 +453,22 @@ def held_levels(building: Building, wall: BuildingWall) -> list[int]:
     return [foot, *sorted(level for level in floors | ties if foot < level <= top)]
 
 
+def _held_height(building: Building, wall: BuildingWall, level: int) -> float:
+    """Return the height at which a wall is held at a level: that of its floor, without one of its ties [m]."""
+    bears = any(at == level and wall.name in each.walls and not each.sliding for _, at, each in building.bearing)
+    ties = [tie_height(building, each) for each in building.ties if each.level == level and wall.name in each.walls]
+    return building.levels[level] if bears or not ties else min(ties)
+
+
 def bending(building: Building, wall: BuildingWall, foot: int, top: int) -> MadeMechanism:
     """Return a wall that bends vertically between two levels that hold it, under what stands above.
 
     Raises
     ------
     NotMade
-        If it has two thicknesses between them, bears a floor there, or has no load on top.
+        If it has two thicknesses between them, or bears a floor there.
     """
-    low, high = building.levels[foot], building.levels[top]
+    low, high = building.levels[foot], _held_height(building, wall, top)
     parts = strips(building, wall, low, high)
     if len({each.thickness for each in parts}) > 1:
         raise NotMade("thickness")
@@ -446,12 +486,11 @@ def bending(building: Building, wall: BuildingWall, foot: int, top: int) -> Made
         weights.append((g * each.load * each.span * wall.length / 2, at))
     load = sum(weight for weight, _ in weights)
     mass = sum(each.mass for each in parts)
-    if load <= OF_ITS_WEIGHT * g * mass:
-        raise NotMade("no_load", exists=False)
-    x = sum(weight * at for weight, at in weights) / load
-    fields = {"thickness": thickness, "height": _rounded(high - low), "hinge": "weakest", "overburden": round(load, 1),
-              "overburden_eccentricity": _rounded(x), "depth": wall.length,
-              "density": round(mass / (thickness * (high - low) * wall.length), 4)}  # fmt: skip
+    loaded = {"overburden": round(load, 1)} if load > OF_ITS_WEIGHT * g * mass else {}
+    if loaded:
+        loaded["overburden_eccentricity"] = _rounded(sum(weight * at for weight, at in weights) / load)
+    fields = {"thickness": thickness, "height": _rounded(high - low), "hinge": "weakest", **loaded,
+              "depth": wall.length, "density": round(mass / (thickness * (high - low) * wall.length), 4)}  # fmt: skip
     fields |= _given(unusual=building.unusual, friction=building.masonry.friction)
     name = f"{wall.name}: bending between {low:.4g} and {high:.4g} m"
     if (crushing := _crushing(building)) is not None:  # the weakest hinge is that of pivots on the faces
@@ -575,7 +614,7 @@ def corner(building: Building, k: int, z: float, angle: float) -> MadeMechanism:
     height, slope = top - z, tan(angle)
     densities = [_density(building, each) for each in walls]
     a, b = (each.thick(_storey(building, each, z)) for each in walls)
-    reaches = [max(min(each.length - t, courses.reach or inf), 0.0) for each, t in zip(walls, (b, a), strict=True)]
+    reaches = [_reach(building, each, t, z) for each, t in zip(walls, (b, a), strict=True)]
     size = (a + b) / sqrt(2)
     steps = {y for each in walls for y in _steps(building, each, z) if y < height}
     pieces = list[tuple[float, complex, float]]()
@@ -621,7 +660,7 @@ def corner(building: Building, k: int, z: float, angle: float) -> MadeMechanism:
     rubbing = [(height, *each) for each in zip(thin, densities, reaches, strict=True)]
     if (friction := _friction(building, courses, slope, rubbing)) is not None:
         fields["interlock"] = friction
-    fields |= _given(loads=loads, rebound=building.rebound, unusual=building.unusual)
+    fields |= _given(loads=loads, rebound=building.rebound, unusual=_meant(building, friction))
     remarks = [Remark("edge", {})] if building.masonry.crushing is not None else []
     first, second = given.walls
     name = f"{given.name or f'corner of {first} and {second}'}: overturning about {z:.4g} m"

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from itertools import pairwise, product
-from math import ceil, inf, isclose, isnan, nan, radians
+from math import ceil, inf, isclose, isnan, nan
 from typing import Any, NamedTuple, get_args
 
 import numpy as np
@@ -14,6 +14,7 @@ import numpy as np
 from rocking_cli.core.hung.ties import BAR_DIAMETERS
 from rocking_cli.dynamics.parallel import in_processes
 from rocking_cli.errors import InputError, MechanismError, Problem, SolverError, named
+from rocking_cli.io.json_text import json_text
 from rocking_cli.questions.building import made as making
 from rocking_cli.questions.building.description import Building, BuildingWall
 from rocking_cli.questions.building.made import MadeMechanism, NotMade
@@ -25,13 +26,10 @@ from rocking_cli.verification.check import code_of, verify, with_histories
 from rocking_cli.verification.code import SiteFile
 from rocking_cli.verification.results import Histories, Verification
 
-FIRST_CELLS, REFINED = (
-    4,
-    8,
-)  # intervals of a search in which the least is looked for, and evaluations in the best of them
+FIRST_CELLS = 4  # intervals of a search in which the least is looked for
+REFINED = 8  # evaluations in the best of them
 CRACKS = 12, 8  # of angles alone, and beside heights: ratios drop where the courses slip off before the end
 CELL = 1.0  # m, of which storeys that are higher have more intervals
-SEARCHED = 32  # evaluations of a search by two arguments
 PERIOD_FACTOR = 0.05  # C1 of T1 = C1 H^(3/4), H in m
 LENGTHENED, DAMPING, LATER_DAMPING = 1.75, 0.05, 0.10  # T1 at SLV over that at SLD, and damping ratios
 LEAST_REST = 0.05  # share of the last storey above the highest hinge that is tried
@@ -189,67 +187,84 @@ class MechanismSearch:
         structure = Structure(made.structure())
         return Found(made, structure, verify(structure, floor_of(self.building, self.site, made.z)))
 
+    @cached_property
+    def _ratios(self) -> dict[str, float]:
+        """Ratios computed so far: walls that are alike, and hinges that a search comes back to, are verified once."""
+        return {}
+
     def ratio(self, made: MadeMechanism) -> float:
         """Return capacity over demand of a mechanism: none if it falls at rest; infinite if it cannot be verified."""
+        key = json_text([made.mechanism, made.z, made.fields])
+        if key not in self._ratios:
+            try:
+                ratio = self.verified(made).ratio
+            except InputError as error:
+                ratio = 0.0 if _falls(error) else inf
+            except (MechanismError, SolverError):
+                ratio = inf
+            self._ratios[key] = inf if isnan(ratio) else ratio
+        return self._ratios[key]
+
+    def _at(self, make: Callable[..., MadeMechanism], *arguments: float) -> float:
+        """Return the ratio of a mechanism made with arguments; infinite if it is not made."""
         try:
-            ratio = self.verified(made).ratio
-        except InputError as error:
-            return 0.0 if _falls(error) else inf
-        except (MechanismError, SolverError):
+            return self.ratio(make(*arguments))
+        except NotMade:
             return inf
-        return inf if isnan(ratio) else ratio
 
     def weakest(
         self,
-        make: Callable[..., MadeMechanism],
-        *bounds: tuple[float, float],
-        cells: Sequence[int] = (FIRST_CELLS,),
+        make: Callable[[float], MadeMechanism],
+        low: float,
+        high: float,
+        cells: int = FIRST_CELLS,
         known: float | None = None,
-    ) -> tuple[float, ...]:
-        """Return the arguments within bounds at which a mechanism has its least ratio: a grid, then a search.
+    ) -> float:
+        """Return the argument from `low` to `high` at which a mechanism has its least ratio: a grid, then a search.
 
         The search is in the cells around the least of the grid; what is lower by less than `LOWER` is not looked for.
-        `cells` are the intervals of each argument in the grid, `known` is the ratio at the lower bounds.
+        `cells` are the intervals of the grid, `known` is the ratio at `low`.
         """
-        from scipy.optimize import minimize, minimize_scalar
+        from scipy.optimize import minimize_scalar
 
-        def at(*arguments: float) -> float:
-            try:
-                return self.ratio(make(*arguments))
-            except NotMade:
-                return inf
+        places = np.linspace(low, high, cells + 1).tolist()
+        values = [self._at(make, x) for x in places[known is not None :]]
+        values = values if known is None else [known, *values]
+        least = min(values)
+        k = _least(values)
+        if least in (0.0, inf):
+            return float(places[k])
+        best, step = places[k], (high - low) / cells
+        if k in (0, cells):  # a lower value beside an end shows at once
+            beside = best + step / 8 if k == 0 else best - step / 8
+            if not self._at(make, beside) < least * (1 - LOWER):
+                return float(best)
+        ends = max(low, best - step), min(high, best + step)
+        stops = {"maxiter": REFINED, "xatol": 0.01 * step}
+        # An infinite value has no parabola.
+        ended = minimize_scalar(
+            lambda x: min(self._at(make, x), FAR_ABOVE * least), bounds=ends, method="bounded", options=stops
+        )
+        return float(ended.x) if float(ended.fun) < least * (1 - LOWER) else float(best)
 
-        axes = [np.linspace(*each, count + 1).tolist() for each, count in zip(bounds, cells, strict=True)]
-        values = {place: at(*place) for place in [*product(*axes)][known is not None :]}
-        if known is not None:  # at the lower ends
-            values[tuple(low for low, _ in bounds)] = known
-        best = min(values, key=lambda place: (float(f"{values[place]:.9g}"), place))
-        if values[best] in (0.0, inf):
-            return best
+    def weakest_joint(
+        self, make: Callable[..., MadeMechanism], joints: Sequence[float], slopes: Sequence[float], cells: int
+    ) -> tuple[float, float]:
+        """Return the bed joint and the angle of the crack with which a wall that interlocks has its least ratio.
 
-        def bounded(*arguments: float) -> float:
-            return min(at(*arguments), FAR_ABOVE * values[best])  # an infinite value has no parabola
-
-        if len(bounds) == 1:
-            (x,), ((low, high),) = best, bounds
-            step = (high - low) / cells[0]
-            if x in (low, high):  # a lower value beside an end shows at once
-                beside = x + step / 8 if x == low else x - step / 8
-                if not at(beside) < values[best] * (1 - LOWER):
-                    return best
-            ends = max(low, x - step), min(high, x + step)
-            stops = {"maxiter": REFINED, "xatol": 0.01 * step}
-            ended = minimize_scalar(bounded, bounds=ends, method="bounded", options=stops)
-            refined: tuple[float, ...] = (float(ended.x),)
-        else:
-            corners = [best]  # a first simplex half a cell wide, into the bounds
-            for k, (x, (low, high), count) in enumerate(zip(best, bounds, cells, strict=True)):
-                step = (high - low) / count / 2 * (1 if x < (low + high) / 2 else -1)
-                corners.append((*best[:k], x + step, *best[k + 1 :]))
-            within: dict[str, Any] = {"maxfev": SEARCHED, "xatol": 1e-3, "fatol": 1e-4, "initial_simplex": corners}
-            ended = minimize(lambda x: bounded(*x), best, method="Nelder-Mead", bounds=bounds, options=within)
-            refined = tuple(map(float, ended.x))
-        return refined if float(ended.fun) < values[best] * (1 - LOWER) else best
+        A grid of some of the joints and of all the angles, then every joint and all the angles around its least.
+        """
+        step = -(-len(joints) // cells)
+        places = [*product(joints[::-step], slopes)]
+        z, angle = places[_least([self._at(make, *place) for place in places])]
+        k = joints.index(z)
+        near = joints[max(0, k - step + 1) : k + step]
+        z = near[_least([self._at(make, each, angle) for each in near])]
+        if len(slopes) == 1:
+            return z, angle
+        width = slopes[1] - slopes[0]
+        ends = max(slopes[0], angle - width), min(slopes[-1], angle + width)
+        return z, self.weakest(partial(make, z), *ends, cells=2)
 
     def of_wall(self, wall: BuildingWall) -> Iterator[Found | LeftOutMechanism]:
         """Yield the mechanisms of a wall."""
@@ -268,20 +283,26 @@ class MechanismSearch:
         building, courses = self.building, self.building.interlock
         low, high = building.levels[level : level + 2]
         has_gable = any(each.wall == wall.name for each in building.gables)
-        crack = list[tuple[float, float]]()
-        if wall.connection == "interlock" and courses is not None and courses.angle == "weakest":
-            crack = [(0.0, courses.steepest)]
+        is_searched = wall.connection == "interlock" and courses is not None and courses.angle == "weakest"
+        steepest = courses.steepest if is_searched and courses is not None else 0.0
         about = partial(making.overturning, building, wall)
-        at_level: tuple[float, ...] = self.weakest(partial(about, low), *crack, cells=CRACKS[:1]) if crack else ()
+        at_level = [self.weakest(partial(about, low), 0.0, steepest, cells=CRACKS[0])] if is_searched else []
         title = Remark.of("overturning", wall=wall.name, z=low)
         of_level = yield from self._one(partial(about, low, *at_level), title)
         if has_gable:
             yield from self._one(partial(about, low, *at_level, gable=False), title._replace(key="overturning_without"))
         end = high - (LEAST_REST * (high - low) if is_last else LEVEL_HEIGHT)  # below it the floor at its top acts
-        cells = (max(FIRST_CELLS, ceil((high - low) / CELL)), *CRACKS[1:])
-        known = of_level.ratio if of_level is not None and not crack else None
-        z, *angle = self.weakest(about, (low, end), *crack, cells=cells[: 1 + len(crack)], known=known)
-        z = round(z, 3)
+        cells = max(FIRST_CELLS, ceil((high - low) / CELL))
+        joints = [z for z in making.joints(building, wall) if low + LEVEL_HEIGHT < z <= end]
+        angle: list[float] = []
+        if joints:
+            slopes = (
+                np.linspace(0.0, steepest, CRACKS[1] + 1).tolist() if is_searched else [making.given_angle(building)]
+            )
+            z, *angle = self.weakest_joint(about, joints, slopes, cells)
+        else:
+            z = self.weakest(about, low, end, cells, known=None if of_level is None else of_level.ratio)
+            z = round(z, 3)
         others = [] if of_level is None else [of_level.ratio]
         if z > high - 2 * LEVEL_HEIGHT:
             others.append(self.ratio(about(high, *angle)))
@@ -296,7 +317,7 @@ class MechanismSearch:
             at_foot = yield from self._one(about, Remark.of("standing", wall=each.wall))
             if each in building.gables and at_foot is not None:
                 low, high = at_foot.made.hinge
-                (z,) = self.weakest(about, (low, high - LEAST_GABLE * (high - low)), known=at_foot.ratio)
+                z = self.weakest(about, low, high - LEAST_GABLE * (high - low), known=at_foot.ratio)
                 if z > low + LEVEL_HEIGHT:
                     yield from self._one(partial(about, round(z, 3)))
         for k, given in enumerate(building.corners):
@@ -305,12 +326,13 @@ class MechanismSearch:
             walls = [building.wall[name].reaches(building.count) for name in given.walls]
             for level in range(max(foot for foot, _ in walls), min(top for _, top in walls)):
                 turned = partial(making.corner, building, k, building.levels[level])
-                if courses.angle == "weakest":
-                    yield from self._one(
-                        partial(turned, *self.weakest(turned, (0.0, courses.steepest), cells=CRACKS[:1]))
-                    )
-                else:
-                    yield from self._one(partial(turned, radians(courses.angle)))
+                is_searched = courses.angle == "weakest"
+                angle = (
+                    self.weakest(turned, 0.0, courses.steepest, CRACKS[0])
+                    if is_searched
+                    else making.given_angle(building)
+                )
+                yield from self._one(partial(turned, angle))
 
     def _one(self, make: Callable[[], MadeMechanism], title: Remark | None = None) -> Any:
         """Yield a mechanism with its verification, or why there is none; return it, or None."""
@@ -326,6 +348,11 @@ class MechanismSearch:
         else:
             yield verified
             return verified
+
+
+def _least(values: Sequence[float]) -> int:
+    """Return the index of the least value, of values that differ by their rounding the first."""
+    return min(range(len(values)), key=lambda k: (float(f"{values[k]:.9g}"), k))
 
 
 def _falls(error: Exception) -> bool:

@@ -455,9 +455,21 @@ class TestBending:
         for levels, why in (((0, 2), "its thickness changes"),):
             with not_made(why):
                 bending(house, wall, *levels)
-        plain = building([{"name": "w", "length": 5.0, "thickness": 0.5}])
-        with not_made("nothing stands on it"):
-            bending(plain, plain.walls[0], 0, 2)
+
+    def test_a_wall_that_only_ties_hold_spans_to_them(self):
+        """What is above the ties stands on it; ties at its top leave the hinge at the top, which is refused."""
+        tie = {"level": 2, "walls": ["w"], "length": 5.0, "bars": 2, "diameter": 0.02, "steel": "S235"}
+        wall = {"name": "w", "length": 5.0, "thickness": 0.5}
+        tied = building([wall], ties=[{**tie, "below": 0.4}])
+        typed = rk.SpanningWall(thickness=0.5, height=5.6, hinge="weakest", overburden=round(0.4 * 2.5 * 1800 * G, 1),
+                                overburden_eccentricity=0.0, depth=5.0, density=1800.0)  # fmt: skip
+        same(tied, bending(tied, tied.walls[0], 0, 2), typed, 2.8)
+        at_top = building([wall], ties=[tie])
+        with pytest.raises(InputError, match="without a load on top"):
+            bending(at_top, at_top.walls[0], 0, 2).structure()
+        floor = {"name": "deck", "level": 2, "load": 200.0, "span": 4.0, "walls": ["w"]}
+        both = building([wall], ties=[{**tie, "below": 0.4}], floors=[floor])
+        assert bending(both, both.walls[0], 0, 2).fields["height"] == 6.0
 
 
 class TestArches:

@@ -12,7 +12,7 @@ from rocking_cli.errors import InputError, MechanismError, SolverError
 from rocking_cli.io.json_text import json_text
 from rocking_cli.io.yaml_file import parse
 from rocking_cli.questions.building.description import building_of
-from rocking_cli.questions.building.made import NotMade, bending, corner, held_levels, overturning, standing
+from rocking_cli.questions.building.made import NotMade, bending, corner, held_levels, joints, overturning, standing
 from rocking_cli.questions.building.study import CRACKS, LOWER, MechanismSearch, assess
 from tests.conftest import EXAMPLES
 
@@ -36,7 +36,8 @@ def zeta(search, make):
 def everything(search, heights, angles):
     """Yield every mechanism of a building that could be meant, without any search: what it is, and its ratio.
 
-    Hinges are at each level and at `heights` places within each storey, cracks at `angles` slopes.
+    Hinges are at each level and at `heights` places within each storey, or in every bed joint of a wall that
+    interlocks, cracks at `angles` slopes.
     """
     house = search.building
     courses = house.interlock
@@ -49,11 +50,13 @@ def everything(search, heights, angles):
         foot, top = wall.reaches(house.count)
         gables = (True, False) if any(each.wall == wall.name for each in house.gables) else (True,)
         cracks = slopes if wall.connection == "interlock" else [0.0]
+        beds = joints(house, wall)
         for level in range(foot, top):
             low, high = house.levels[level : level + 2]
             if level + 1 == top and len(gables) == 1:
                 high -= 0.05 * (high - low)
-            for z, angle, gable in product(hinges(low, high), cracks, gables):
+            places = [low, *(z for z in beds if low + 0.01 < z <= high)] if beds else hinges(low, high)
+            for z, angle, gable in product(places, cracks, gables):
                 yield (wall.name, round(z, 3), angle, gable), partial(overturning, house, wall, z, angle, gable=gable)
         levels = held_levels(house, wall)
         for low, high in pairwise(levels):
@@ -178,7 +181,7 @@ class TestLeast:
         house = building({**CROSSED, "gables": []})
         search, wall = MechanismSearch(house, site_of(SITE)), house.walls[2]
         steepest = house.interlock.steepest
-        (angle,) = search.weakest(partial(overturning, house, wall, z), (0.0, steepest), cells=CRACKS[:1])
+        angle = search.weakest(partial(overturning, house, wall, z), 0.0, steepest, CRACKS[0])
         least = min(
             zeta(search, partial(overturning, house, wall, z, a)) for a in np.linspace(0, steepest, 10).tolist()
         )
@@ -195,24 +198,46 @@ class TestLeast:
                           "interlock": {"course": 0.3, "overlap": 0.16}})  # fmt: skip
         search = MechanismSearch(house, site_of(SITE))
         make = partial(overturning, house, house.walls[0], 0.0)
-        (angle,) = search.weakest(make, (0.0, house.interlock.steepest), cells=CRACKS[:1])
+        angle = search.weakest(make, 0.0, house.interlock.steepest, CRACKS[0])
         least = min(zeta(search, partial(make, a)) for a in np.linspace(0, house.interlock.steepest, 49).tolist())
         assert zeta(search, partial(make, angle)) <= least * (1 + TOLERANCE)
 
-    @pytest.mark.parametrize(
-        ("bounds", "valley"),
-        [([(0.0, 3.0)], [1.234]), ([(0.0, 3.0)], [0.0]), ([(0.0, 3.0)], [3.0]),
-         ([(0.0, 3.0), (0.0, 0.5)], [1.9, 0.31]), ([(0.0, 3.0), (0.0, 0.5)], [0.0, 0.5])],
-    )  # fmt: skip
-    def test_a_valley(self, bounds, valley, monkeypatch):
+    @pytest.mark.parametrize("valley", [1.234, 0.0, 3.0])
+    def test_a_valley(self, valley, monkeypatch):
         """Of a made-up ratio with one least value within the bounds."""
         search = MechanismSearch(building(PLAIN), site_of(SITE))
-        widths = [high - low for low, high in bounds]
-        monkeypatch.setattr(MechanismSearch, "ratio", lambda self, x: 1 + sum(((a - b) / w) ** 2 for a, b, w in x))
-        found = search.weakest(
-            lambda *x: list(zip(x, valley, widths, strict=True)), *bounds, cells=(4, 8)[: len(bounds)]
+        monkeypatch.setattr(MechanismSearch, "ratio", lambda self, x: 1 + ((x - valley) / 3) ** 2)
+        assert ((search.weakest(lambda x: x, 0.0, 3.0) - valley) / 3) ** 2 < 2 * LOWER
+
+    @pytest.mark.parametrize("valley", [(1.9, 0.31), (0.1, 0.5), (2.9, 0.0)])
+    def test_a_valley_of_joints_and_angles(self, valley, monkeypatch):
+        search, beds = MechanismSearch(building(PLAIN), site_of(SITE)), [k / 10 for k in range(1, 30)]
+        monkeypatch.setattr(
+            MechanismSearch, "ratio", lambda self, x: 1 + ((x[0] - valley[0]) / 3) ** 2 + (2 * (x[1] - valley[1])) ** 2
         )
-        assert sum(((a - b) / w) ** 2 for a, b, w in zip(found, valley, widths, strict=True)) < 2 * LOWER
+        z, angle = search.weakest_joint(lambda *x: x, beds, [k / 16 for k in range(9)], 4)
+        assert z == valley[0] and (2 * (angle - valley[1])) ** 2 < 2 * LOWER
+        assert search.weakest_joint(lambda *x: x, beds, [0.0], 4) == (valley[0], 0.0)
+
+    def test_hinges_of_walls_that_interlock_are_in_bed_joints(self):
+        """Courses of 0.2 m below where the walls meet, at 6 m, and without another wall nowhere."""
+        house = building(CROSSED)
+        assert joints(house, house.walls[2]) == pytest.approx([k / 5 for k in range(30)])
+        assert joints(house, house.walls[1]) == []
+
+    def test_walls_that_are_alike_are_verified_once(self, monkeypatch):
+        search = MechanismSearch(building({**PLAIN, "roof": None}), site_of(SITE))
+        calls = []
+        verified = MechanismSearch.verified
+        monkeypatch.setattr(MechanismSearch, "verified", lambda self, made: calls.append(made) or verified(self, made))
+        (wall,) = search.building.walls
+        ratios = {
+            search.ratio(overturning(search.building, one, 0.5))
+            for one in (wall, wall.model_copy(update={"name": "b"}))
+        }
+        assert len(calls) == len(ratios) == 1
+        search.ratio(overturning(search.building, wall, 0.6))
+        assert len(calls) == 2
 
     @pytest.mark.rest
     def test_all_of_a_small_building(self):
