@@ -38,6 +38,7 @@ ARCH_THRUST, ARCH_RISE = 0.15, 1 / 1.2  # over f t and t, which give the strengt
 MOST_SLENDER_ARCH = 20.0  # length over thickness
 MOST_ARCH_RATIO = 0.57  # g, as one rigid body of the inertia of two has at most 1/sqrt(3) as its ratio at rest
 LEAST_OVERLAP = 1e-6  # share of an overlap below which nothing of it is left
+LEAST_AREA = 1e-6  # m2, of a wedge; a smaller one is left out
 OF_ITS_WEIGHT = 1e-9  # share of the weight of a wall; a smaller load on top is none
 
 
@@ -274,7 +275,7 @@ def _sides(
         back = [[inner - min(y * slope, reach), y] for y in (head, bend, foot)]
         corners = [[_rounded(x), _rounded(y)] for x, y in ((inner, foot), (inner, head), *back)]
         distinct = [each for k, each in enumerate(corners) if each != corners[k - 1]]
-        if len(distinct) < 3:  # of a crack so steep that its wedge is no wider than a rounding
+        if _area([complex(*each) for each in distinct]) < LEAST_AREA:  # no wider than a rounding
             continue
         density = sum(thick * density for thick, density in along) / depth
         wedges.append({"polygon": distinct, "depth": depth, "density": density})

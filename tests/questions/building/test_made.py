@@ -472,6 +472,53 @@ class TestBending:
         assert bending(both, both.walls[0], 0, 2).fields["height"] == 6.0
 
 
+class TestReach:
+    def side(self, **fields):
+        """A building of a wall with one side wall, and the wall with its wedge about its foot."""
+        walls = [{"name": "w", "length": 8.0, "thickness": 0.5, "sides": ["s"], "connection": "interlock"},
+                 {"name": "s", "length": 7.0, "thickness": 0.4, "openings": fields.pop("openings", [])}]  # fmt: skip
+        house = building(walls, interlock={"course": 0.2, "overlap": 0.15, **fields.pop("interlock", {})}, **fields)
+        return house, overturning(house, house.walls[0], 0.0, 0.15)
+
+    def back(self, made):
+        return -0.25 - min(x for part in made.fields["parts"] for x, _ in part["polygon"])
+
+    def test_only_what_is_before_an_opening_comes_along(self):
+        """From the nearer end, as it is not known which meets the wall; but not an opening below the hinge."""
+        opened = [{"storey": 1, "x": 1.2, "z": 0.0, "width": 1.0, "height": 2.0}]
+        assert self.back(self.side()[1]) == pytest.approx(6 * tan(0.15), abs=1e-4)
+        assert self.back(self.side(openings=opened)[1]) == pytest.approx(1.2 - 0.5)
+        far = [{**opened[0], "x": 7.0 - 1.0 - 0.9}]
+        house, made = self.side(openings=far)
+        assert self.back(made) == pytest.approx(0.9 - 0.5)
+        above = overturning(house, house.walls[0], 3.0, 0.15)
+        assert self.back(above) == pytest.approx(3 * tan(0.15), abs=1e-4)
+        assert self.back(self.side(openings=far, interlock={"reach": 0.6})[1]) == pytest.approx(0.6)
+
+    @pytest.mark.parametrize("reach", [4e-5, 1e-4, 1e-3])
+    def test_a_small_reach_is_nearly_none(self, reach):
+        """With two parapets its body is by its numbers."""
+        on = [{"wall": "w", "height": 0.8, "thickness": 0.3}, {"wall": "w", "height": 1.0, "thickness": 0.3}]
+        house, made = self.side(interlock={"reach": reach}, parapets=on)
+        _, none = self.side(interlock={"reach": 1e-6}, parapets=on)
+        search = MechanismSearch(house, site_of(SITE))
+        assert search.ratio(made) == pytest.approx(search.ratio(none), rel=5 * reach + 1e-3)
+
+    def test_a_gable_and_a_parapet_on_one_wall_turn_with_it(self):
+        """Beside each other along the wall: masses, centroid and inertia are those of all parts."""
+        on = {"gables": [{"wall": "w", "height": 2.0, "thickness": 0.4}],
+              "parapets": [{"wall": "w", "height": 1.0, "thickness": 0.3, "length": 3.0}]}  # fmt: skip
+        house = building([{"name": "w", "length": 8.0, "thickness": 0.5}], **on)
+        made = overturning(house, house.walls[0], 0.0)
+        parts = strips(house, house.walls[0], 0.0, 6.0)
+        masses = [1800 * 0.5 * 8 * 6, 1800 * 0.4 * 8 * 2 / 2, 1800 * 0.3 * 3 * 1]
+        assert len(parts) == 1 and made.fields["mass"] == pytest.approx(sum(masses), rel=1e-9)
+        x = sum(m * (0.25 - t / 2) for m, t in zip(masses, (0.5, 0.4, 0.3), strict=True)) / sum(masses)
+        assert made.fields["centroid"][0] == pytest.approx(x, abs=1e-4)
+        assert made.fields["left_foot"] == [-0.25, 0.0] and made.fields["right_foot"] == [0.25, 0.0]
+        assert made.structure()
+
+
 class TestArches:
     WALL: ClassVar = {"name": "w", "length": 6.0, "thickness": 0.4, "confined": {"resistance": 4e5}}
 
