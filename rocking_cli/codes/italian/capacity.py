@@ -178,11 +178,13 @@ class ExactCurve:
     def _last(self) -> tuple[float, set[str]]:
         """The end of the curve [rad], and the names of what does not hold up to there."""
         gone = set[str]()
-        while more := {each.name for each in self.breaks if each.phi < self._vanishes(gone)} - gone:
-            gone |= more
-        if self._vanishes(gone) == inf:
-            gone |= {*against(self.chain), *(tie.name for tie in self.chain.mechanism.ties or [])}
         end = self._vanishes(gone)
+        while more := {each.name for each in self.breaks if each.phi < end} - gone:
+            gone |= more
+            end = self._vanishes(gone)
+        if end == inf:
+            gone |= {*against(self.chain), *(tie.name for tie in self.chain.mechanism.ties or [])}
+            end = self._vanishes(gone)
         if end == 0 and self.breaks:  # it does not stand without what ends first
             end, gone = self.breaks[0].phi, set()
         if not 0 < end < inf:
