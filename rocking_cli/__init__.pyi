@@ -23,7 +23,7 @@ from rocking_cli.ask.answer import MappingAnswer as MappingAnswer
 from rocking_cli.ask.ground_motions import Motion as Motion
 from rocking_cli.ask.ground_motions import Motions as Motions
 from rocking_cli.ask.groups import ModelName as ModelName
-from rocking_cli.ask.groups import SiteLike as SiteLike
+from rocking_cli.ask.inputs import SiteLike as SiteLike
 from rocking_cli.ask.inputs import StructureLike as StructureLike
 from rocking_cli.ask.watcher import Watcher as Watcher
 from rocking_cli.core import Body as Body
@@ -64,6 +64,7 @@ from rocking_cli.processing.oscillator import ResponseSpectrum as ResponseSpectr
 from rocking_cli.processing.reading import turned as turned
 from rocking_cli.processing.steps import Step as Step
 from rocking_cli.questions.animate.verb import Animation as Animation
+from rocking_cli.questions.building.study import Assessed as Assessed
 from rocking_cli.questions.calibrate.study import Trace as Trace
 from rocking_cli.questions.calibrate.study import TraceFit as TraceFit
 from rocking_cli.questions.demand.view import SpectraOfSite as SpectraOfSite
@@ -98,7 +99,6 @@ from rocking_cli.questions.spectrum.study import Spectrum as Spectrum
 from rocking_cli.questions.survey.structure_table import StructureTable as StructureTable
 from rocking_cli.questions.survey.study import Survey as Survey
 from rocking_cli.studies.neighbours import Release as Release
-from rocking_cli.studies.picture import Picture as Picture
 from rocking_cli.verification.results import Verification as Verification
 from typing import Any as Any
 from typing import Literal as Literal
@@ -405,6 +405,165 @@ def animate(
 ) -> Answer[Animation] | Answers[Answer[Animation]]:
     ...
 
+def building(
+    building: str | Path | Mapping[str, Any],
+    motions: Motion | Sequence[Motion] | Motions = ...,
+    *,
+    site: SiteLike | None = ...,
+    strengthened: str | Path | Mapping[str, Any] | None = ...,
+    worst: int = ...,
+    design: int | None = ...,
+    structures: str | Path | None = ...,
+    sheet: str | Path | None = ...,
+    appendix: bool = ...,
+    jobs: int | None = ...,
+    in_processes: bool = ...,
+    plot: str | Path | None = ...,
+    sets: Mapping[str, Any] | None = ...,
+    units: str | None = ...,
+    dt: float | str | None = ...,
+    channel: str | int | None = ...,
+    quantity: Literal["acceleration", "velocity", "displacement"] | None = ...,
+    gain: Gain | str | None = ...,
+    run_on: bool | None = ...,
+    despite_header: bool | None = ...,
+    other: str | Path | None = ...,
+    other_channel: str | int | None = ...,
+    azimuth: float | str | None = ...,
+    floor: Floor | str | Mapping[str, Any] | None = ...,
+    scale: float | str | None = ...,
+    target_pga: float | str | None = ...,
+    target_pgv: float | str | None = ...,
+    polarity: Literal['1', '-1', 'both', 1, -1] = ...,
+    state: str | None = ...,
+    on_floor: bool = ...,
+    language: Literal['en', 'it'] | None = ...,
+    project: str | None = ...,
+    place: str | None = ...,
+    client: str | None = ...,
+    author: str | None = ...,
+    logo: str | Path | None = ...,
+    origin: str | None = ...,
+    out: str | Path | None = ...,
+    separator: Literal[',', ';', 'tab'] | None = ...,
+    decimal: Literal['.', ','] | None = ...,
+    watch: Watcher = ...,
+) -> Answer[Assessed]:
+    """Verify all out-of-plane mechanisms of a building by a code, and name the one that governs.
+
+    Parameters
+    ----------
+    building : str | Path | Mapping[str, Any]
+        The file of a building, or of a table of its walls; in Python its fields too.
+    motions : Motion | Sequence[Motion] | Motions, optional
+        One motion or several, their files, or pulses as text; without any, no histories are followed.
+    site : SiteLike | None, optional
+        Site file, or its fields in Python; by default the `site` of the building. `rocking new site` prints a template.
+    strengthened : str | Path | Mapping[str, Any] | None, optional
+        The strengthened structure, to be verified too and compared with FILE.
+    worst : int, optional
+        Number of mechanisms to verify by time histories. By default 3.
+    design : int | None, optional
+        Level whose ties are designed: the least bars that satisfy the code.
+    structures : str | Path | None, optional
+        Write each mechanism into this folder as a structure file, with its site, and a table of all.
+    sheet : str | Path | None, optional
+        Write the calculation sheet (.html; .docx and .pdf need an extra package; a browser does for .pdf).
+    appendix : bool, optional
+        Add the workings of each mechanism that counts to the sheet.
+    jobs : int | None, optional
+        Number of processor cores to use. By default one for each processor.
+    in_processes : bool, optional
+        Share the walls among processes; a script then needs `if __name__ == "__main__"`.
+    plot : str | Path | None, optional
+        Draw the building with its mechanisms (.png, .svg or .pdf).
+    sets : Mapping[str, Any] | None, optional
+        Motions of a limit state of its own: a folder or list that `rocking select` wrote, a file, or a pattern.
+        Repeatable. In Python a mapping with the motions of each state.
+    units : str | None, optional
+        Unit of the record, if the file does not state it.
+    dt : float | str | None, optional
+        Sampling interval in s, if the file has no times.
+    channel : str | int | None, optional
+        Channel or column to read: its number, from 1, or its name.
+    quantity : Literal["acceleration", "velocity", "displacement"] | None, optional
+        Quantity in the record; velocities and displacements are differentiated.
+    gain : Gain | str | None, optional
+        Instrument sensitivity: the value of one unit of the record, such as 0.05m/V or 4.7e-6m/s2/count.
+    run_on : bool | None, optional
+        Read a text without times as one series that runs on over its rows.
+    despite_header : bool | None, optional
+        Accept a text with other numbers of points or peaks than its header states, as it was cut on purpose.
+    other : str | Path | None, optional
+        Second horizontal component, perpendicular to the record; the two are rotated into the plane of the structure.
+    other_channel : str | int | None, optional
+        Channel of the second component in its file.
+    azimuth : float | str | None, optional
+        Azimuth of the structure's plane, in degrees: 0 is the record, 90 the second. `respond` also accepts all.
+    floor : Floor | str | Mapping[str, Any] | None, optional
+        Floor of a building on which the structure stands: T1=0.4,xi=0.05,z=6m,H=9m,n=3 (or z/H=0.67, gamma=1.29).
+    scale : float | str | None, optional
+        Scale factor on the motion.
+    target_pga : float | str | None, optional
+        Peak ground acceleration to scale the motion to, in g.
+    target_pgv : float | str | None, optional
+        Peak ground velocity to scale the motion to, in m/s.
+    polarity : {"1", "-1", "both"}, optional
+        Polarity of the motion: 1 as given, -1 reversed. By default 1.
+    state : str | None, optional
+        Limit state to which the records belong, such as SLC, if the site gives it. By default that of the verdict.
+    on_floor : bool, optional
+        The motions are those of the floor of the site, and not of the ground.
+    language : {"en", "it"}, optional
+        Language of the answer and of documents. By default that of the site, or en.
+    project : str | None, optional
+        Project name, for the heading of the document.
+    place : str | None, optional
+        Location of the structure, for the heading.
+    client : str | None, optional
+        Client who ordered the document, for the heading.
+    author : str | None, optional
+        Author of the document, for the heading.
+    logo : str | Path | None, optional
+        Author's logo (.png, .jpg or .svg), for the heading.
+    origin : str | None, optional
+        What the document says of how it was made. By default the command, or the call of Python.
+    out : str | Path | None, optional
+        Write all mechanisms, the worst first. (.csv or .xlsx).  - is standard output.
+    separator : {",", ";", "tab"}, optional
+        Separator of the CSV table. By default a comma.
+    decimal : {".", ","}, optional
+        Decimal sign of the CSV table. By default a point.
+    watch : Watcher
+        Told what is read and written, what is doubtful, and how far the work is.
+
+    Returns
+    -------
+    Answer of Assessed
+        `rows` are the mechanisms with their verifications, the worst first; `left_out` those that were not verified.
+
+    Raises
+    ------
+    InputError
+        If the building, its site or a motion cannot be used, no mechanism can be verified, or a file cannot be written.
+    SolverError
+        If a motion cannot be simulated to its end.
+
+    Notes
+    -----
+    The mechanisms are those of DeJong and Dimitrakopoulos (2014), Sections 2 to 4, under loads and ties.
+
+    Examples
+    --------
+    >>> import rocking_cli as rk
+    >>> site = {"FC": 1.35, "ag": 0.2, "F0": 2.5, "TC": 0.4, "S": 1.2}
+    >>> walls = [{"name": "front", "length": 8.0, "thickness": 0.6}]
+    >>> house = {"levels": [0.0, 4.0, 8.0], "masonry": {"density": 1800.0}, "walls": walls}
+    >>> answer = rk.building(house, site=site)
+    >>> answer.governs.made.name
+    'front: overturning about 4 m'
+    """
+
 def calibrate(
     structure: StructureLike,
     *,
@@ -513,7 +672,7 @@ def demand(
     plot : str | Path | None, optional
         Plot the spectra of acceleration and displacement (.png, .svg or .pdf).
     out : str | Path | None, optional
-        Write the spectra over all periods (.csv or .parquet).  - is standard output.
+        Write the spectra over all periods (.csv, .parquet or .xlsx).  - is standard output.
     separator : {",", ";", "tab"}, optional
         Separator of the CSV table. By default a comma.
     decimal : {".", ","}, optional
@@ -639,7 +798,7 @@ def design(
     opening : float, optional
         Largest opening of a joint up to which a history holds, over D_cr. By default 0.005.
     out : str | Path | None, optional
-        Write the scanned values and the metric at each (.csv or .parquet).  - is standard output.
+        Write the scanned values and the metric at each (.csv, .parquet or .xlsx).  - is standard output.
     separator : {",", ";", "tab"}, optional
         Separator of the CSV table. By default a comma.
     decimal : {".", ","}, optional
@@ -673,7 +832,7 @@ def draw(
     plot: str | Path | None = ...,
     dxf: str | Path | None = ...,
     watch: Watcher = ...,
-) -> Answer[Picture]:
+) -> Answer[Any]:
     """Draw a structure at rest with its dimensions, and displaced in both directions.
 
     Parameters
@@ -693,7 +852,7 @@ def draw(
     Returns
     -------
     Answer of Picture
-        Parts of the structure, its dimensions, and the positions of the parts at any rotation.
+        Parts of the structure, its dimensions, and the positions of the parts at any rotation; of a building its walls.
 
     Raises
     ------
@@ -730,7 +889,7 @@ def equiv(
     structures : StructureLike | Sequence[StructureLike]
         One structure or several, or their YAML files.
     out : str | Path | None, optional
-        Write the parameters, a row for each direction of each structure.  - is standard output.
+        Write the parameters, a row for each direction of each structure (.csv or .xlsx).  - is standard output.
     separator : {",", ";", "tab"}, optional
         Separator of the CSV table. By default a comma.
     decimal : {".", ","}, optional
@@ -831,7 +990,7 @@ def equivalent_pulses(
     opening : float, optional
         Largest opening of a joint up to which a history holds, over D_cr. By default 0.005.
     out : str | Path | None, optional
-        Write the responses against p t.  - is standard output.
+        Write the responses against p t (.csv or .xlsx).  - is standard output.
     separator : {",", ";", "tab"}, optional
         Separator of the CSV table. By default a comma.
     decimal : {".", ","}, optional
@@ -1258,9 +1417,9 @@ def results(
     store : str | Path
         The store, which may be that of a study that is still running.
     out : str | Path | None, optional
-        Write all runs (.csv or .parquet).  - is standard output.
+        Write all runs (.csv, .parquet or .xlsx).  - is standard output.
     curves : str | Path | None, optional
-        Write the curves, one line per intensity (.csv or .parquet).  - is standard output.
+        Write the curves, one line per intensity (.csv, .parquet or .xlsx).  - is standard output.
     pelicun : str | Path | None, optional
         Write the lognormal curves for pelicun, as fragility.csv in this folder.
     quantiles : bool, optional
@@ -1550,7 +1709,7 @@ def margin(
     restitution_deviation : float | None, optional
         Standard deviation of restitution. By default that of the file, 0.03 of a given value, or 0.05.
     out : str | Path | None, optional
-        Write the shares.  - is standard output.
+        Write the shares (.csv or .xlsx).  - is standard output.
     separator : {",", ";", "tab"}, optional
         Separator of the CSV table. By default a comma.
     decimal : {".", ","}, optional
@@ -1753,7 +1912,7 @@ def overturning(
         Engine: exact (one degree of freedom), blocks (free blocks), or auto (blocks if exact tells no outcome). By
         default exact.
     out : str | Path | None, optional
-        Write the map, one point per line, or the curves.  - is standard output.
+        Write the map, one point per line, or the curves (.csv or .xlsx).  - is standard output.
     separator : {",", ";", "tab"}, optional
         Separator of the CSV table. By default a comma.
     decimal : {".", ","}, optional
@@ -2526,7 +2685,7 @@ def respond(  # type: ignore[overload-overlap]
     title : str | None, optional
         Title of tables and plot. By default the name of the structure.
     out : str | Path | None, optional
-        Write the time histories (.csv or .parquet).  - is standard output.
+        Write the time histories (.csv, .parquet or .xlsx).  - is standard output.
     separator : {",", ";", "tab"}, optional
         Separator of the CSV table. By default a comma.
     decimal : {".", ","}, optional
@@ -2744,7 +2903,7 @@ def respond_each(
     opening : float, optional
         Largest opening of a joint up to which a history holds, over D_cr. By default 0.005.
     out : str | Path | None, optional
-        Write the rows of `to_frame`, with units in the headings.  - is standard output.
+        Write the rows of `to_frame`, with units in the headings (.csv, .parquet or .xlsx).  - is standard output.
     separator : {",", ";", "tab"}, optional
         Separator of the CSV table. By default a comma.
     decimal : {".", ","}, optional
@@ -3050,7 +3209,7 @@ def spectrum(
     opening : float, optional
         Largest opening of a joint up to which a history holds, over D_cr. By default 0.005.
     out : str | Path | None, optional
-        Write the curves, including those of each motion.  - is standard output.
+        Write the curves, including those of each motion (.csv or .xlsx).  - is standard output.
     separator : {",", ";", "tab"}, optional
         Separator of the CSV table. By default a comma.
     decimal : {".", ","}, optional
@@ -3134,13 +3293,13 @@ def survey(
     Parameters
     ----------
     structures : str | Path | Mapping[str, Sequence[Any]] | StructureTable | Sequence[StructureLike]
-        A table of structures as a CSV file, or its columns by their headings (a frame of pandas is one); or structures,
-        or their YAML files.
+        A table of structures as CSV, .xlsx, .xls or .ods, or its columns by their headings (a frame of pandas is one);
+        or structures, or their YAML files.
     motions : Motion | Sequence[Motion] | Motions, optional
         One motion or several, their files, or pulses as text; without any, no histories are followed.
     site : SiteLike | None, optional
         Site file, or its fields in Python: each structure is verified by its code and ranked by the ratio of capacity
-        to demand. `rocking new site` prints a template.
+        to demand. A column site replaces it for a row. `rocking new site` prints a template.
     top : int, optional
         Number of structures to show. By default 20.
     jobs : int | None, optional
@@ -3213,7 +3372,7 @@ def survey(
     origin : str | None, optional
         What the document says of how it was made. By default the command, or the call of Python.
     out : str | Path | None, optional
-        Write all rows in ranked order (.csv or .parquet).  - is standard output.
+        Write all rows in ranked order (.csv, .parquet or .xlsx).  - is standard output.
     separator : {",", ";", "tab"}, optional
         Separator of the CSV table. By default a comma.
     decimal : {".", ","}, optional
@@ -3250,10 +3409,10 @@ def verify(
     *,
     strengthened: StructureLike | None = ...,
     control: tuple[float, float] | tuple[float, float, str | None] | None = ...,
-    sets: Mapping[str, Any] | None = ...,
     in_full: bool = ...,
     sheet: str | Path | None = ...,
     plot: str | Path | None = ...,
+    sets: Mapping[str, Any] | None = ...,
     units: str | None = ...,
     dt: float | str | None = ...,
     channel: str | int | None = ...,
@@ -3296,15 +3455,15 @@ def verify(
         The strengthened structure, to be verified too and compared with FILE.
     control : tuple[float, float] | tuple[float, float, str | None] | None, optional
         Control point, in m, and the body it is on. By default centroid of the moving weights.
-    sets : Mapping[str, Any] | None, optional
-        Motions of a limit state of its own: a folder or list that `rocking select` wrote, a file, or a pattern.
-        Repeatable. In Python a mapping with the motions of each state.
     in_full : bool, optional
         Show also the ground, both curves, every clause and the remarks in full. By default True.
     sheet : str | Path | None, optional
         Write the calculation sheet (.html; .docx and .pdf need an extra package; a browser does for .pdf).
     plot : str | Path | None, optional
         Plot the capacity curves (.png, .svg or .pdf).
+    sets : Mapping[str, Any] | None, optional
+        Motions of a limit state of its own: a folder or list that `rocking select` wrote, a file, or a pattern.
+        Repeatable. In Python a mapping with the motions of each state.
     units : str | None, optional
         Unit of the record, if the file does not state it.
     dt : float | str | None, optional

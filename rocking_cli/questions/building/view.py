@@ -185,10 +185,27 @@ def _of_rows(found: Assessed, say: Language) -> Iterator[str]:
         for remark in row.made.remarks:
             yield f"{say(row.made.title)}: {say(remark)}."
     if rows := [row for row in found.rows if row.made.name in found.shaken]:
-        others = say("shaken_others") if len(rows) < len(found.rows) else ""
-        yield say("shaken", names=", ".join(say(row.made.title) for row in rows), others=others)
+        yield say(
+            "shaken", outcomes="; ".join(": ".join([say(row.made.title), *_of_histories(row, say)]) for row in rows)
+        )
+        if len(rows) < len(found.rows):
+            yield say("shaken_others")
         left_out = dict.fromkeys(each for row in rows for each in row.conclusion.left_out if each.what == "motion")
         yield from not_counted([*left_out], code_words(found, say))
+
+
+def _of_histories(row: Found, say: Language) -> Iterator[str]:
+    """Yield the outcome of the time histories of a mechanism, in its worse direction; nothing of too few records."""
+    checks = [each for side in row.verification.directions.values() for each in side.checks if each.motions]
+    worst = {each.state: each for each in sorted(checks, key=lambda each: -(each.ratio or 0.0))}
+    outcomes = []
+    for state, each in worst.items():
+        verdict = say(f"short_{each.concluded.value}")
+        known = {} if each.ratio is None else {"ratio": each.ratio}
+        key = "shaken_by" if known else "shaken_unknown"
+        outcomes.append(say(key, state=state, count=len(each.motions), verdict=verdict, **known))
+    if outcomes:
+        yield ", ".join(outcomes)
 
 
 def compared(found: Assessed, other: Assessed, say: Language) -> Table:

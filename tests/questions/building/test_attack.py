@@ -41,11 +41,13 @@ class TestDesignedTies:
             answer.to_dict()["designed"]["conclusion"]["concluded"] == "not_satisfied"
         )  # the upper storey still falls
 
+    @pytest.mark.rest
     def test_what_stands_on_a_held_wall_governs_too(self):
         answer = rk.building(house(ties=[TIE], parapets=[{"wall": "w", "height": 2.0, "thickness": 0.25}]), design=2)
         assert answer.to_dict()["designed"]["governs"] == "parapet of w: overturns about 6 m"
         assert "still not satisfied" in told(answer)
 
+    @pytest.mark.rest
     def test_what_is_not_decided_does_not_fail(self):
         answer = rk.building(house(ties=[TIE], site=SITE | {"intervention": "local"}), design=2)
         assert "Whether bars suffice at level 2 is not decided" in told(answer)
