@@ -258,8 +258,8 @@ class MechanismSearch:
         places = [*product(joints[::-step], slopes)]
         z, angle = places[_least([self._at(make, *place) for place in places])]
         k = joints.index(z)
-        near = joints[max(0, k - step + 1) : k + step]
-        z = near[_least([self._at(make, each, angle) for each in near])]
+        around = joints[max(0, k - step + 1) : k + step]
+        z = around[_least([self._at(make, each, angle) for each in around])]
         if len(slopes) == 1:
             return z, angle
         width = slopes[1] - slopes[0]
