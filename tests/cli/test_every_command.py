@@ -210,9 +210,10 @@ WITHOUT_HISTORY = (
     "record R --plot p.svg",
 )  # fmt: skip
 AS_TEXT = ("record R --fit-pulse --plot p.svg", "equiv A N -o -")
-# These follow no history; `selfcheck` follows those of its blocks. `calibrate` judges no structure.
+# These follow no history; `selfcheck` follows those of its blocks. `calibrate` judges no structure. `building` verifies
+# as `verify` does.
 WITHOUT = {
-    "calibrate", "draw", "equiv", "collapse", "error", "record", "select", "demand", "mechanisms", "measures", "new",
+    "building", "calibrate", "draw", "equiv", "collapse", "error", "record", "select", "demand", "mechanisms", "measures", "new",
     "info", "selfcheck", "completion", "import",
 }  # fmt: skip
 BARE = re.compile(r"\bkN\b|\[N\]|\bN m\b|\d N[ ,.;<]")
