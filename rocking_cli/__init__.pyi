@@ -561,7 +561,7 @@ def building(
     >>> house = {"levels": [0.0, 4.0, 8.0], "masonry": {"density": 1800.0}, "walls": walls}
     >>> answer = rk.building(house, site=site)
     >>> answer.governs.made.name
-    'front: overturning about 4 m'
+    'front: overturning about 0 m'
     """
 
 def calibrate(

@@ -52,7 +52,7 @@ def building(asked: BuildingAsked, watch: Watcher) -> Answer[Assessed]:
     >>> house = {"levels": [0.0, 4.0, 8.0], "masonry": {"density": 1800.0}, "walls": walls}
     >>> answer = rk.building(house, site=site)
     >>> answer.governs.made.name
-    'front: overturning about 4 m'
+    'front: overturning about 0 m'
     """
     from rocking_cli.core.hung.ties import BAR_DIAMETERS
     from rocking_cli.questions.building.description import one_sided_toothing
