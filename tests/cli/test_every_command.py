@@ -213,8 +213,8 @@ AS_TEXT = ("record R --fit-pulse --plot p.svg", "equiv A N -o -")
 # These follow no history; `selfcheck` follows those of its blocks. `calibrate` judges no structure. `building` verifies
 # as `verify` does.
 WITHOUT = {
-    "building", "calibrate", "draw", "equiv", "collapse", "error", "record", "select", "demand", "mechanisms", "measures", "new",
-    "info", "selfcheck", "completion", "import",
+    "building", "calibrate", "draw", "equiv", "collapse", "error", "record", "select", "demand", "mechanisms",
+    "measures", "new", "info", "selfcheck", "completion", "import",
 }  # fmt: skip
 BARE = re.compile(r"\bkN\b|\[N\]|\bN m\b|\d N[ ,.;<]")
 """A force that is not per unit mass."""

@@ -182,27 +182,29 @@ class MechanismSearch:
     building: Building
     site: SiteFile
 
-    def verified(self, made: MadeMechanism) -> Found:
-        """Return a mechanism with its verification. Raises `InputError` or `MechanismError`."""
-        structure = Structure(made.structure())
-        return Found(made, structure, verify(structure, floor_of(self.building, self.site, made.z)))
-
     @cached_property
     def _ratios(self) -> dict[str, float]:
         """Ratios computed so far: walls that are alike, and hinges that a search comes back to, are verified once."""
         return {}
 
+    def verified(self, made: MadeMechanism) -> Found:
+        """Return a mechanism with its verification. Raises `InputError` or `MechanismError`."""
+        structure = Structure(made.structure())
+        verified = Found(made, structure, verify(structure, floor_of(self.building, self.site, made.z)))
+        self._ratios[_key(made)] = inf if isnan(verified.ratio) else verified.ratio
+        return verified
+
     def ratio(self, made: MadeMechanism) -> float:
         """Return capacity over demand of a mechanism: none if it falls at rest; infinite if it cannot be verified."""
-        key = json_text([made.mechanism, made.z, made.fields])
+        key = _key(made)
         if key not in self._ratios:
+            self._ratios[key] = inf
             try:
-                ratio = self.verified(made).ratio
+                self.verified(made)
             except InputError as error:
-                ratio = 0.0 if _falls(error) else inf
+                self._ratios[key] = 0.0 if _falls(error) else inf
             except (MechanismError, SolverError):
-                ratio = inf
-            self._ratios[key] = inf if isnan(ratio) else ratio
+                pass
         return self._ratios[key]
 
     def _at(self, make: Callable[..., MadeMechanism], *arguments: float) -> float:
@@ -218,18 +220,16 @@ class MechanismSearch:
         low: float,
         high: float,
         cells: int = FIRST_CELLS,
-        known: float | None = None,
     ) -> float:
         """Return the argument from `low` to `high` at which a mechanism has its least ratio: a grid, then a search.
 
         The search is in the cells around the least of the grid; what is lower by less than `LOWER` is not looked for.
-        `cells` are the intervals of the grid, `known` is the ratio at `low`.
+        `cells` are the intervals of the grid.
         """
         from scipy.optimize import minimize_scalar
 
         places = np.linspace(low, high, cells + 1).tolist()
-        values = [self._at(make, x) for x in places[known is not None :]]
-        values = values if known is None else [known, *values]
+        values = [self._at(make, x) for x in places]
         least = min(values)
         k = _least(values)
         if least in (0.0, inf):
@@ -288,7 +288,7 @@ class MechanismSearch:
         about = partial(making.overturning, building, wall)
         at_level = [self.weakest(partial(about, low), 0.0, steepest, cells=CRACKS[0])] if is_searched else []
         title = Remark.of("overturning", wall=wall.name, z=low)
-        of_level = yield from self._one(partial(about, low, *at_level), title)
+        yield from self._one(partial(about, low, *at_level), title)
         if has_gable:
             yield from self._one(partial(about, low, *at_level, gable=False), title._replace(key="overturning_without"))
         end = high - (LEAST_REST * (high - low) if is_last else LEVEL_HEIGHT)  # below it the floor at its top acts
@@ -301,12 +301,11 @@ class MechanismSearch:
             )
             z, *angle = self.weakest_joint(about, joints, slopes, cells)
         else:
-            z = self.weakest(about, low, end, cells, known=None if of_level is None else of_level.ratio)
-            z = round(z, 3)
-        others = [] if of_level is None else [of_level.ratio]
+            z = round(self.weakest(about, low, end, cells), 3)
+        others = [self._at(about, low, *at_level)]
         if z > high - 2 * LEVEL_HEIGHT:
-            others.append(self.ratio(about(high, *angle)))
-        if z > low + LEVEL_HEIGHT and (not others or self.ratio(about(z, *angle)) < (1 - LOWER) * min(others)):
+            others.append(self._at(about, high, *angle))
+        if z > low + LEVEL_HEIGHT and self._at(about, z, *angle) < (1 - LOWER) * min(others):
             yield from self._one(partial(about, z, *angle))
 
     def of_others(self) -> Iterator[Found | LeftOutMechanism]:
@@ -317,7 +316,7 @@ class MechanismSearch:
             at_foot = yield from self._one(about, Remark.of("standing", wall=each.wall))
             if each in building.gables and at_foot is not None:
                 low, high = at_foot.made.hinge
-                z = self.weakest(about, low, high - LEAST_GABLE * (high - low), known=at_foot.ratio)
+                z = self.weakest(about, low, high - LEAST_GABLE * (high - low))
                 if z > low + LEVEL_HEIGHT:
                     yield from self._one(partial(about, round(z, 3)))
         for k, given in enumerate(building.corners):
@@ -348,6 +347,11 @@ class MechanismSearch:
         else:
             yield verified
             return verified
+
+
+def _key(made: MadeMechanism) -> str:
+    """Return what decides the verification of a mechanism."""
+    return json_text([made.mechanism, made.z, made.fields])
 
 
 def _least(values: Sequence[float]) -> int:

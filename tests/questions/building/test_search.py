@@ -225,6 +225,14 @@ class TestLeast:
         assert joints(house, house.walls[2]) == pytest.approx([k / 5 for k in range(30)])
         assert joints(house, house.walls[1]) == []
 
+    def test_a_storey_that_openings_take_away_has_a_reason(self):
+        """Nothing is left of it at the height of the opening, so that no hinge below turns all of it."""
+        wall = {**PLAIN["walls"][0], "openings": [{"storey": 1, "x": 0.0, "z": 2.9, "width": 7.0, "height": 0.3}]}
+        house = building({**PLAIN, "walls": [wall]})
+        search = MechanismSearch(house, site_of(SITE))
+        (left,) = [each for each in search.of_wall(house.walls[0]) if each.open]
+        assert left.why.key == "why_openings"
+
     def test_walls_that_are_alike_are_verified_once(self, monkeypatch):
         search = MechanismSearch(building({**PLAIN, "roof": None}), site_of(SITE))
         calls = []
