@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from mechanisms.asymmetric_frame import AsymmetricFrame
 from mechanisms.block import Block
+from rocking_cli.core import Direction
 from rocking_cli.core.structure_fields import DirectionalRestitution
 from rocking_cli.core.structure_file import load_structure, parse_structure
 from rocking_cli.errors import InputError, MechanismError, StructureError, of_structure
@@ -157,6 +158,15 @@ def test_a_wrong_file_gets_one_message_at_its_place(case):
     assert words in str(problem)
     assert problem.excerpt == text.splitlines()[line - 1].replace("\t", " ")
     assert max(map(len, str(problem).splitlines())) < 200  # long lines and values are cut
+
+
+def test_a_corner_that_would_land_on_the_side_to_which_nothing_turns_is_allowed():
+    """A wedge behind a wall that leans on a building reaches further back than the wall is wide."""
+    behind = "mechanism: rigid_body\npolygon: [[0, 0], [0.3, 0], [0.3, 0.2], [-0.1, 0.2], [-0.1, 0.1]]\n"
+    (problem,) = problems(behind)
+    assert "in the negative direction another corner meets the ground" in str(problem)
+    assert parse(behind + "one_sided: positive\nrebound: 0.3\n").directions == [Direction.POSITIVE]
+    assert problems(behind + "one_sided: negative\nrebound: 0.3\n")
 
 
 def test_all_problems_are_listed_at_once_in_the_order_of_the_file():
