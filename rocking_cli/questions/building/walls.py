@@ -97,6 +97,9 @@ def _value(sheet: Spreadsheet, line: int, name: str, cell: str, unit: str) -> An
         value = read(text, COLUMNS[name]) if value is None else value
     except UnitError as error:
         raise InputError(Problem(error.message, sheet.file, line, field=name, hint=error.hint)) from None
+    if not value > 0:
+        hint = "leave the cell empty if nothing bears there" if name in ("bears", "span") else None
+        raise InputError(Problem(f"must be above 0, got {cell}", sheet.file, line, field=name, hint=hint))
     if name == "storey" and not (1 <= value <= MAX_STOREYS and value.is_integer()):
         raise InputError(
             Problem(f"must be a whole number from 1 to {MAX_STOREYS}, got {cell}", sheet.file, line, field=name)

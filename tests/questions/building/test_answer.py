@@ -221,6 +221,8 @@ def test_walls_of_a_table_are_a_building(tmp_path):
         ("name,storey,thickness,height,length\na,1,0.5,3,5\nb,1,0.5,3.3,5\n", "is 3.3 m, but storey 1 is 3 m high"),
         ("name,storey,thickness,height,length\na,1.5,0.5,3,5\n", "must be a whole number"),
         ("name,storey,thickness,height,length\na,1,thick,3,5\n", "thickness"),
+        ("name,storey,thickness,height,length\na,1,-0.5,3,5\n", "w.csv:2: thickness must be above 0, got -0.5"),
+        ("name,storey,thickness,height,length,bears,span\na,1,0.5,3,5,0,4\n", "bears must be above 0, got 0"),
         ("name,storey,thickness,height\na,1,0.5,3\n", "has no column length"),
         ("name,storey,thickness,height,length,colour\na,1,0.5,3,5,red\n", "colour is not a column"),
         ("name,storey,thickness,height,length,bears\na,1,0.5,3,5,4 kN/m2\n", "span: is missing|span is missing"),
