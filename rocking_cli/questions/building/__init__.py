@@ -1,3 +1,3 @@
-"""Verify all mechanisms of a building that one file describes."""
+"""Verify all mechanisms of a building in one file."""
 
 PLACE = 425

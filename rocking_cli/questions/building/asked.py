@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from pydantic import model_validator
 
@@ -50,6 +50,7 @@ class BuildingAsked(UnderSets, InLanguage, Identity, WithTable):
       rocking new building --walls walls.csv > house.yaml
     """
 
+    writes_each: ClassVar[bool] = True  # the folder of structures last, which the next run refuses if it is there
     building: str | Path | Mapping[str, Any] = option(
         "The file of a building, or of a table of its walls; in Python its fields too.", FILE, where="input",
         default=..., typed="BUILDING.yaml",

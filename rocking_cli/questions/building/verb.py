@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rocking_cli.ask.answer import Answer, drawn
 from rocking_cli.ask.inputs import language_of, site_of
-from rocking_cli.ask.verbs import verb
+from rocking_cli.ask.verbs import verb, write_files
 from rocking_cli.ask.watcher import Watcher
 from rocking_cli.errors import InputError, Problem, RockingError, named
 from rocking_cli.questions.building.asked import BuildingAsked
@@ -94,17 +94,19 @@ def building(asked: BuildingAsked, watch: Watcher) -> Answer[Assessed]:
     if asked.design is not None:
         with watch.progress(len(BAR_DIAMETERS), "diameters") as advance:
             designed = bars_of_level(result, asked.design, advance)
-    if asked.structures is not None:
-        _write_structures(asked.structures, result, watch)
-    if asked.sheet is not None:
-        from rocking_cli.questions.building.pages import write_sheet
-
-        try:
-            write_sheet(asked, result, designed, language, watch)
-        except RockingError as error:
-            watch.unwritten(error)
     figure = drawn("questions.building.picture.draw_building", result, say)
-    return Answer("building", result, view(result, designed, say), partial(columns, result, say), figure)
+    answer = Answer("building", result, view(result, designed, say), partial(columns, result, say), figure)
+    write_files(answer, asked, watch)
+    try:
+        if asked.sheet is not None:
+            from rocking_cli.questions.building.pages import write_sheet
+
+            write_sheet(asked, result, designed, language, watch)
+        if asked.structures is not None:  # last: a folder that is there is refused by the next run
+            _write_structures(asked.structures, result, watch)
+    except RockingError as error:
+        watch.unwritten(error)
+    return answer
 
 
 def _read(given: Any, watch: Watcher) -> tuple[Building, Path]:
@@ -152,22 +154,22 @@ def _histories(asked: BuildingAsked, found: Assessed, watch: Watcher) -> dict[st
 
 def _write_structures(folder: Path, found: Assessed, watch: Watcher) -> None:
     """Write each mechanism as a structure file with the site at its height, and a table of all."""
-    import csv
     import io
 
     from rocking_cli.io.files import write_folder
+    from rocking_cli.io.tables import write_csv
     from rocking_cli.questions.building.view import file_of, site_file
 
-    texts, lines = dict[str, bytes](), [["file", "site"]]
+    texts, table = dict[str, bytes](), {"file": list[str](), "site": list[str]()}
     for rank, each in enumerate(found.rows, 1):
         word = "".join(sign if sign.isalnum() else "_" for sign in each.made.name).strip("_")
         file = f"{rank:03d}_{word[:60]}.yaml"
         site = f"site_{each.made.z:.3f}_m.yaml"
         texts[file] = file_of(each).encode()
         texts.setdefault(site, site_file(found, each.made.z).encode())
-        lines.append([file, site])
-    table = io.StringIO()
-    csv.writer(table, lineterminator="\n").writerows(lines)
-    texts["mechanisms.csv"] = table.getvalue().encode()
+        table["file"].append(file)
+        table["site"].append(site)
+    write_csv(stream := io.BytesIO(), [table])
+    texts["mechanisms.csv"] = stream.getvalue()
     write_folder(folder, texts)
     watch.note(f"wrote {len(found.rows)} structures into {folder}: `rocking survey {folder}/mechanisms.csv` reads them")

@@ -10,7 +10,7 @@ from rocking_cli import Registry
 from rocking_cli.core.structure_file import parse_structure
 from rocking_cli.errors import InputError
 from rocking_cli.io.starters import STARTERS, in_italian, italian, starter, template_of
-from rocking_cli.questions.new.command import SITE, STUDY
+from rocking_cli.questions.new.command import BUILDING, SITE, STUDY
 from rocking_cli.views.mechanisms import template
 from tests.cli.test_cli import run
 
@@ -57,7 +57,7 @@ def test_the_terms_are_those_of_the_trade():
 
 def test_every_italian_name_finds_a_template():
     names = italian()["templates"]
-    assert set(names.values()) == {*STARTERS, *Registry(), STUDY, SITE} - {"asymmetric_frame"}
+    assert set(names.values()) == {*STARTERS, *Registry(), STUDY, SITE, BUILDING} - {"asymmetric_frame"}
     assert not set(names) & {*Registry(), *STARTERS}
     for italian_name in ("facciata", "parapetto", "arco", "catena", "portale", "Cella campanaria"):
         shown = run("new", italian_name)
