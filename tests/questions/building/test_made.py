@@ -504,6 +504,13 @@ class TestReach:
         search = MechanismSearch(house, site_of(SITE))
         assert search.ratio(made) == pytest.approx(search.ratio(none), rel=5 * reach + 1e-3)
 
+    def test_courses_that_stand_for_others_may_be_thin(self):
+        """They rub as high as the crack has not run through the reach, with the moment of courses of less thickness."""
+        house, _ = self.side(interlock={"reach": 0.3})
+        made = overturning(house, house.walls[0], 0.0, 0.55)
+        assert 0 < made.fields["interlock"]["thickness"] < 0.1
+        assert MechanismSearch(house, site_of(SITE)).verified(made).ratio > 0
+
     def test_a_gable_and_a_parapet_on_one_wall_turn_with_it(self):
         """Beside each other along the wall: masses, centroid and inertia are those of all parts."""
         on = {"gables": [{"wall": "w", "height": 2.0, "thickness": 0.4}],
