@@ -11,7 +11,6 @@ from typing import cast
 
 from rocking_cli.core import Mechanism
 from rocking_cli.errors import InputError, MechanismError
-from rocking_cli.io.starters import instead_of_mechanism
 from rocking_cli.plugins.registry import Plugins, origin
 
 
@@ -38,6 +37,8 @@ class Registry(Plugins[type[Mechanism]]):
 
     def meant(self, name: str) -> str | None:
         """Return the template that an unknown name means, or else the mechanism with the nearest name, if any."""
+        from rocking_cli.io.starters import instead_of_mechanism
+
         return instead_of_mechanism(name) or super().meant(name)
 
     @staticmethod

@@ -11,7 +11,6 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from rocking_cli.errors import Problem
-from rocking_cli.io.starters import italian
 from rocking_cli.io.yaml_file import Document, Place, spell
 from rocking_cli.text import cut, did_you_mean
 
@@ -257,6 +256,8 @@ MEANINGS = {
 
 def by_meaning(word: str, fields: Mapping[str, FieldInfo]) -> str | None:
     """Return a hint on the field that holds what a word, also an Italian one, means; None if no field does."""
+    from rocking_cli.io.starters import italian
+
     word = italian()["fields"].get(word.lower(), word)
     if word in fields:
         return f"did you mean {word}?"

@@ -437,26 +437,21 @@ def _of_what_bears(given: Mapping[str, Any], named: Mapping[str, Any]) -> Iterat
     borne += [((key, k), part) for key in ("floors", "ties") for k, part in enumerate(_list(given.get(key)))]
     taken = set[tuple[str, ...]]()
     for place, part in borne:
-        for wall in dict.fromkeys(map(str, _list(part.get("walls")))) if isinstance(part, dict) else ():
-            called = part.get("name", "tie" if place[0] == "ties" else "roof")
-            if (mark := (wall, str(called), str(place[0] == "ties" and part.get("level")))) in taken:
+        if not isinstance(part, dict):
+            continue
+        is_tie, level = place[0] == "ties", count if place == ("roof",) else part.get("level")
+        for wall in dict.fromkeys(map(str, _list(part.get("walls")))):
+            called = part.get("name", "tie" if is_tie else "roof")
+            if (mark := (wall, str(called), str(is_tie and level))) in taken:
                 yield (*place, "name"), f"is that of another on {wall}: give each a name of its own"
             taken.add(mark)
-    for key in ("floors", "ties"):
-        for k, each in enumerate(_list(given.get(key))):
-            if isinstance(each, dict) and isinstance(each.get("level"), int):
-                yield from on_walls((key, k), each, each["level"])
-                if key == "ties" and 1 <= each["level"] <= count:
-                    yield from (((key, k, *place), why) for place, why in _of_tie(each, given, named))
-    if isinstance(given.get("roof"), dict):
-        yield from on_walls(("roof",), given["roof"], count)
-    bearing = [(("floors", k), each) for k, each in enumerate(_list(given.get("floors")))] + [
-        (("roof",), given.get("roof"))
-    ]
-    for place, each in bearing:
-        load = _number(each.get("load"), USUAL_LOAD[0]) if isinstance(each, dict) else USUAL_LOAD[0]
+        if isinstance(level, int):
+            yield from on_walls(place, part, level)
+            if is_tie and 1 <= level <= count:
+                yield from (((*place, *field), why) for field, why in _of_tie(part, given, named))
+        load = _number(part.get("load"), USUAL_LOAD[0])
         if not USUAL_LOAD[0] <= load <= USUAL_LOAD[1] and "load" not in _list(given.get("unusual")):
-            guess = f"did you mean {load:g} kN/m2? " if load < USUAL_LOAD[0] else f"did you mean {load:g} N/m2? "
+            guess = f"did you mean {load:g} {'kN/m2' if load < USUAL_LOAD[0] else 'N/m2'}? "
             yield (*place, "load"), f"is {load:.4g} kg/m2: {guess}{_if_meant('load')}"
     for key in ("gables", "parapets", "bell_gables"):
         for k, each in enumerate(_list(given.get(key))):
@@ -487,8 +482,8 @@ def _of_tie(tie: Mapping[str, Any], given: Mapping[str, Any], named: Mapping[str
     levels, level, below = given["levels"], tie["level"], _number(tie.get("below"))
     if below >= levels[level] - levels[level - 1]:
         yield ("below",), "is more than the height of the storey: name the level next above it"
-    plate = tie.get("plate") if isinstance(tie.get("plate"), dict) else {}
-    half = _number((plate or {}).get("height")) / 2
+    plate: Any = tie.get("plate")
+    half = _number(plate.get("height")) / 2 if isinstance(plate, dict) else 0.0
     gabled = [each.get("wall") for each in _list(given.get("gables")) if isinstance(each, dict)]
     for name in (each for each in _list(tie.get("walls")) if isinstance(each, str) and each in named):
         is_top = level == _reach(named[name], len(levels) - 1)[1] and name not in gabled

@@ -17,8 +17,10 @@ import numpy as np
 from pydantic import ValidationError
 
 from rocking_cli.core import Direction, Mechanism, polygon
+from rocking_cli.core.kinematics import area_of
 from rocking_cli.core.registry import Registry
 from rocking_cli.errors import InputError
+from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.io.field_problems import of_arguments
 from rocking_cli.questions.building.description import (
     Bearing,
@@ -58,6 +60,10 @@ class NotMade(Exception):
     def __init__(self, key: str, *, exists: bool = True, **values: Any) -> None:
         super().__init__(key)
         self.why, self.exists = Remark(f"why_{key}", values), exists
+
+
+class FallsAtRest(InputError):
+    """A structure does not stand under its loads without an earthquake."""
 
 
 class Strip(NamedTuple):
@@ -126,12 +132,14 @@ class MadeMechanism:
         return Remark.of(key, wall=self.wall, name=part, z=self.hinge[0], top=self.hinge[1])
 
     def structure(self) -> Mechanism:
-        """Return the structure. Raises `InputError` if its fields do not fit together."""
+        """Return the structure. Raises `InputError` if its fields do not fit together, `FallsAtRest` if it falls."""
         cls = _registry()[self.mechanism]
         try:
             return cls.from_fields({"name": self.name, **self.fields})
         except ValidationError as error:
-            raise InputError(*of_arguments(cls, error.errors(include_url=False), self.mechanism)) from None
+            problems = of_arguments(cls, error.errors(include_url=False), self.mechanism)
+            falls = any(each.field in ("loads", "ties") for each in problems)
+            raise (FallsAtRest if falls else InputError)(*problems) from None
 
 
 @cache
@@ -275,7 +283,7 @@ def _sides(
         back = [[inner - min(y * slope, reach), y] for y in (head, bend, foot)]
         corners = [[_rounded(x), _rounded(y)] for x, y in ((inner, foot), (inner, head), *back)]
         distinct = [each for k, each in enumerate(corners) if each != corners[k - 1]]
-        if _area([complex(*each) for each in distinct]) < LEAST_AREA:  # no wider than a rounding
+        if abs(area_of([complex(*each) for each in distinct])) < LEAST_AREA:  # no wider than a rounding
             continue
         density = sum(thick * density for thick, density in along) / depth
         wedges.append({"polygon": distinct, "depth": depth, "density": density})
@@ -403,7 +411,7 @@ def _by_its_numbers(fields: dict[str, Any], outer: float, *, beside: bool) -> di
     """
     plates = [[complex(*corner) for corner in each["polygon"]] for each in fields["parts"]]
     weighs = [each.get("density", fields["density"]) * each["depth"] for each in fields["parts"]]
-    masses = [_area(corners) * each for corners, each in zip(plates, weighs, strict=True)]
+    masses = [abs(area_of(corners)) * each for corners, each in zip(plates, weighs, strict=True)]
     bodies = [polygon("part", 1.0, corners) for corners in plates]
     whole = sum(masses)
     centroid = sum(mass * each.centroid for mass, each in zip(masses, bodies, strict=True)) / whole
@@ -420,11 +428,6 @@ def _by_its_numbers(fields: dict[str, Any], outer: float, *, beside: bool) -> di
         "polygon": [[plates[0][0].real, 0.0], [outer, 0.0], [outer, max(top, high)], [behind, high]],
     }  # fmt: skip
     return numbers | {key: value for key, value in fields.items() if key not in ("parts", "density", "depth")}
-
-
-def _area(corners: Sequence[complex]) -> float:
-    """Return the area within corners in order."""
-    return abs(sum((p.conjugate() * q).imag for p, q in pairwise([*corners, corners[0]]))) / 2
 
 
 def _meant(building: Building, friction: Mapping[str, Any] | None) -> list[str] | None:
@@ -476,7 +479,7 @@ def bending(building: Building, wall: BuildingWall, foot: int, top: int) -> Made
     between = [name for name, z, _ in _seats(building, wall, low) if z < high]
     if between:
         raise NotMade("between", names=", ".join(between))
-    thickness, outer, g = parts[0].thickness, parts[0].thickness / 2, 9.80665
+    thickness, outer, g = parts[0].thickness, parts[0].thickness / 2, STANDARD_GRAVITY
     above = building.levels[wall.reaches(building.count)[1]]
     weights = [
         (g * each.mass, outer - each.thickness / 2)
@@ -551,7 +554,7 @@ def arch(building: Building, wall: BuildingWall) -> MadeMechanism:
         raise NotMade("spread", exists=False, thrust=thrust / 1e3, resistance=confined.resistance / 1e3)
     density = wall.density or building.masonry.density
     mass, rise = density * t * height * span, ARCH_RISE * t
-    ratio = 8 * thrust * rise / (mass * 9.80665 * span)
+    ratio = 8 * thrust * rise / (mass * STANDARD_GRAVITY * span)
     remarks = [] if ratio <= MOST_ARCH_RATIO else [Remark("stronger_arch", {"ratio": ratio, "most": MOST_ARCH_RATIO})]
     ratio = min(ratio, MOST_ARCH_RATIO)
     # Both halves turn by phi: the middle moves by phi L/2, and their mass by half of it on average.
@@ -630,7 +633,7 @@ def corner(building: Building, k: int, z: float, angle: float) -> MadeMechanism:
                 corners = [complex(0, foot), complex(0, head), *back]
                 corners = [each for m, each in enumerate(corners) if each != corners[m - 1]]
                 wedge = polygon("wedge", 1.0, [complex(each.real / sqrt(2), each.imag) for each in corners])
-                mass, at = density * t * _area(corners), wedge.centroid - (other + t / 2) / sqrt(2)
+                mass, at = density * t * abs(area_of(corners)), wedge.centroid - (other + t / 2) / sqrt(2)
                 pieces.append((mass, at, mass * (wedge.inertia + t**2 / 24)))
     loads = list[dict[str, Any]]()
     furthest = size + max(min(height * slope, each) for each in reaches) / sqrt(2)

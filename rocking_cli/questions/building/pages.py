@@ -63,7 +63,7 @@ def write_sheet(
         "counted": [*map(partial(_section, say), counted)],
         "verdict": [*map(guarded, verdict(found, say))], "conditions": [*map(guarded, conditions(other or found, say))],
         "notes": [*map(guarded, notes(found, say))], "fails": found.conclusion.concluded is not Concluded.SATISFIED,
-        "figure": figure, "command": title.command, "files": _files(asked), "walls": _walls(found, say),
+        "figure": figure, "command": title.command, "files": _files(asked, found), "walls": _walls(found, say),
         "floors": _floors(found, say), "ties": _ties(found),
         "after": [] if other is None else [*map(guarded, verdict(other, say))],
         "compared": None if other is None else translated(say, View({}, [compared(found, other, say)])).parts[0],
@@ -106,8 +106,9 @@ def _appended(part: SheetPart, rank: int, row: Found, say: Any) -> SheetPart:
     return replace(part, key=f"workings-{rank}", heading=heading, parts=within)
 
 
-def _files(asked: BuildingAsked) -> list[File]:
-    given = (asked.building, asked.strengthened, asked.site)
+def _files(asked: BuildingAsked, found: Assessed) -> list[File]:
+    site = found.site.document.file if isinstance(found.building.site, str) else None
+    given = (asked.building, asked.strengthened, asked.site or site)
     return [File(str(each), original(each)) for each in given if isinstance(each, str | Path)]
 
 

@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 
+from rocking_cli.excitation.base import STANDARD_GRAVITY
 from rocking_cli.plotting import style
 from rocking_cli.questions.building.description import Building, BuildingWall
 from rocking_cli.questions.building.made import held_levels, tie_height
@@ -19,7 +20,6 @@ from rocking_cli.studies.conclusion import Concluded
 from rocking_cli.views.view import number
 
 MAX_WALLS_DRAWN = 12
-GRAVITY = 9.80665
 WALL_COLOUR, CONDITIONAL = style.RESTING_COLOUR, style.WORDS[style.STONE]
 COLOURS = {
     Concluded.SATISFIED: style.SPARED,
@@ -68,7 +68,7 @@ def draw_description(building: Building, say: Say) -> Figure:
 
 
 def _panels(count: int, pairs: int) -> tuple[Figure, list[Axes]]:
-    """Return a figure with style.panels of drawings in two columns; the last may stay empty."""
+    """Return a figure of drawings in two columns; the last may stay empty."""
     rows = ceil(count / 2)
     figure, axes = style.panels(INCHES_A_ROW * rows, rows, 2)
     every = list(axes.flat)
@@ -175,7 +175,7 @@ def _draw_section(axes: Axes, building: Building, wall: BuildingWall, say: Say) 
         z, inner = levels[level], outer - wall.thick(level)
         axes.plot([inner - reach, inner + (each.seat or 0.0)], [z, z], color=style.INK, linewidth=2.0, zorder=3)
         how = say("slides") if each.sliding else say("held")
-        load = each.load * GRAVITY / 1e3
+        load = each.load * STANDARD_GRAVITY / 1e3
         text = f"{name}: {load:.3g} kN/m², {each.span:g} m, {how}"
         axes.text(
             inner - 0.1, z + 0.1, text, fontsize=style.SMALL, color=style.INK, va="bottom", ha="right", parse_math=False

@@ -17,7 +17,7 @@ from rocking_cli.errors import InputError, MechanismError, Problem, SolverError,
 from rocking_cli.io.json_text import json_text
 from rocking_cli.questions.building import made as making
 from rocking_cli.questions.building.description import Building, BuildingWall
-from rocking_cli.questions.building.made import MadeMechanism, NotMade
+from rocking_cli.questions.building.made import FallsAtRest, MadeMechanism, NotMade
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure
 from rocking_cli.studies.conclusion import Concluded, Conclusion, severity
@@ -201,9 +201,9 @@ class MechanismSearch:
             self._ratios[key] = inf
             try:
                 self.verified(made)
-            except InputError as error:
-                self._ratios[key] = 0.0 if _falls(error) else inf
-            except (MechanismError, SolverError):
+            except FallsAtRest:
+                self._ratios[key] = 0.0
+            except (InputError, MechanismError, SolverError):
                 pass
         return self._ratios[key]
 
@@ -215,11 +215,7 @@ class MechanismSearch:
             return inf
 
     def weakest(
-        self,
-        make: Callable[[float], MadeMechanism],
-        low: float,
-        high: float,
-        cells: int = FIRST_CELLS,
+        self, make: Callable[[float], MadeMechanism], low: float, high: float, cells: int = FIRST_CELLS
     ) -> float:
         """Return the argument from `low` to `high` at which a mechanism has its least ratio: a grid, then a search.
 
@@ -241,10 +237,11 @@ class MechanismSearch:
                 return float(best)
         ends = max(low, best - step), min(high, best + step)
         stops = {"maxiter": REFINED, "xatol": 0.01 * step}
-        # An infinite value has no parabola.
-        ended = minimize_scalar(
-            lambda x: min(self._at(make, x), FAR_ABOVE * least), bounds=ends, method="bounded", options=stops
-        )
+
+        def bounded(x: float) -> float:
+            return min(self._at(make, x), FAR_ABOVE * least)  # an infinite value has no parabola
+
+        ended = minimize_scalar(bounded, bounds=ends, method="bounded", options=stops)
         return float(ended.x) if float(ended.fun) < least * (1 - LOWER) else float(best)
 
     def weakest_joint(
@@ -286,11 +283,13 @@ class MechanismSearch:
         is_searched = wall.connection == "interlock" and courses is not None and courses.angle == "weakest"
         steepest = courses.steepest if is_searched and courses is not None else 0.0
         about = partial(making.overturning, building, wall)
-        at_level = [self.weakest(partial(about, low), 0.0, steepest, cells=CRACKS[0])] if is_searched else []
-        title = Remark.of("overturning", wall=wall.name, z=low)
-        yield from self._one(partial(about, low, *at_level), title)
-        if has_gable:
-            yield from self._one(partial(about, low, *at_level, gable=False), title._replace(key="overturning_without"))
+        levels = list[float]()
+        for gable in (True, False) if has_gable else (True,):
+            turned = partial(about, low, gable=gable)
+            crack = [self.weakest(turned, 0.0, steepest, CRACKS[0])] if is_searched else []
+            key = "overturning" if gable else "overturning_without"
+            yield from self._one(partial(turned, *crack), Remark.of(key, wall=wall.name, z=low))
+            levels.append(self._at(turned, *crack))
         end = high - (LEAST_REST * (high - low) if is_last else LEVEL_HEIGHT)  # below it the floor at its top acts
         cells = max(FIRST_CELLS, ceil((high - low) / CELL))
         joints = [z for z in making.joints(building, wall) if low + LEVEL_HEIGHT < z <= end]
@@ -302,7 +301,7 @@ class MechanismSearch:
             z, *angle = self.weakest_joint(about, joints, slopes, cells)
         else:
             z = round(self.weakest(about, low, end, cells), 3)
-        others = [self._at(about, low, *at_level)]
+        others = levels[:1]
         if z > high - 2 * LEVEL_HEIGHT:
             others.append(self._at(about, high, *angle))
         if z > low + LEVEL_HEIGHT and self._at(about, z, *angle) < (1 - LOWER) * min(others):
@@ -343,7 +342,7 @@ class MechanismSearch:
             yield LeftOutMechanism(title or Remark.of("part_of_building"), why.why, why.exists)
         except (InputError, MechanismError, SolverError) as error:
             assert title is not None  # it was made
-            yield LeftOutMechanism(title, _why(error), open=True, falls=_falls(error))
+            yield LeftOutMechanism(title, _why(error), open=True, falls=isinstance(error, FallsAtRest))
         else:
             yield verified
             return verified
@@ -357,12 +356,6 @@ def _key(made: MadeMechanism) -> str:
 def _least(values: Sequence[float]) -> int:
     """Return the index of the least value, of values that differ by their rounding the first."""
     return min(range(len(values)), key=lambda k: (float(f"{values[k]:.9g}"), k))
-
-
-def _falls(error: Exception) -> bool:
-    """Return whether a structure does not stand under its loads, as an error says."""
-    problems = error.problems if isinstance(error, InputError) else []
-    return any(each.field in ("loads", "ties") for each in problems)
 
 
 def _why(error: Exception) -> str:

@@ -67,6 +67,8 @@ def building(asked: BuildingAsked, watch: Watcher) -> Answer[Assessed]:
         watch.warn(
             f"{one} interlocks with {side}, but {side} has no `connection: interlock`: it overturns free of {one}"
         )
+    if given.T1 is not None and getattr(site.site, "floor", None) is not None:
+        watch.warn("T1 of the building is not used: the `floor` of the site has the period of the building")
     say, requested = words(language), asked.requested
     refuse(site, motions=bool(requested))
     if asked.sheet is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from math import degrees
+from math import degrees, isfinite
 from operator import itemgetter
 from typing import Any, NamedTuple
 
@@ -201,7 +201,7 @@ def _of_histories(row: Found, say: Language) -> Iterator[str]:
     outcomes = []
     for state, each in worst.items():
         verdict = say(f"short_{each.concluded.value}")
-        known = {} if each.ratio is None else {"ratio": each.ratio}
+        known = {"ratio": each.ratio} if each.ratio is not None and isfinite(each.ratio) else {}
         key = "shaken_by" if known else "shaken_unknown"
         outcomes.append(say(key, state=state, count=len(each.motions), verdict=verdict, **known))
     if outcomes:
@@ -241,7 +241,8 @@ def data(found: Assessed, designed: BarsOfLevel | None) -> dict[str, Any]:
         mechanisms.append({**data_of(COLUMNS, row), "conclusion": end, "structure": structure})
     plain: dict[str, Any] = {
         "building": found.building.name, "site": found.site.site.name, "conclusion": conclusion_data(found.conclusion),
-        "governs": found.governs.made.name, "T1": found.period, "mechanisms": mechanisms,
+        "governs": found.governs.made.name, "mechanisms": mechanisms,
+        "T1": None if getattr(found.site.site, "floor", None) is not None else found.period,  # that of the floor counts
         "left_out": [{"title": english(each.title), "why": english(each.why), "open": each.open, "falls": each.falls}
             for each in found.left_out
         ],

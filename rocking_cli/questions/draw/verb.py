@@ -72,7 +72,8 @@ def _of_building(file: Path, asked: DrawAsked) -> Answer[Any]:
     for name in ("at", "dxf"):
         if asked.has(name):
             raise InputError(Problem("has no effect on a building", field=named(name), hint="leave it out"))
-    house, say = read_building(file), words("en")
+    house = read_building(file)
+    say = words(house.language or "en")
     figure = drawn("questions.building.picture.draw_description", house, say)
     sizes = [f"{each.name}: {each.length:g} m long" for each in house.walls]
     shown = View(

@@ -3,13 +3,14 @@
 import csv
 import json
 import re
+from hashlib import sha256
 
 import pytest
 import yaml
 
 import rocking_cli as rk
 from rocking_cli.core.hung.ties import BAR_DIAMETERS
-from rocking_cli.errors import InputError
+from rocking_cli.errors import DoubtWarning, InputError
 from rocking_cli.questions.building.view import words
 from rocking_cli.studies.conclusion import Concluded
 from tests.cli.test_cli import run
@@ -157,6 +158,48 @@ def test_outcomes_of_records_that_count_are_said():
     )
     ratio = f"SLV with {len(least.motions)} records has the ratio {least.ratio:.3g}, satisfied"
     assert least.concluded == "satisfied" and any(ratio in each for each in answer.sentences)
+
+
+@pytest.mark.rest
+def test_an_outcome_that_is_unknown_is_no_pass():
+    """Ties of steel yield under strong motions, and what comes then is not known."""
+    tie = {"level": 1, "walls": ["w"], "length": 6.0, "bars": 2, "diameter": 0.014, "steel": "S235", "gamma": 1.15}
+    tied = {"levels": [0.0, 6.0], "masonry": {"density": 1800.0}, "rebound": 0.3,
+            "walls": [{"name": "w", "length": 8.0, "thickness": 0.5}], "ties": [tie]}  # fmt: skip
+    answer = rk.building(tied, site=SITE, sets={"SLV": EXAMPLES / "verify" / "slv.yaml"}, scale=4, worst=1)
+    assert answer.rows[0].conclusion.concluded == answer.conclusion.concluded == "unknown"
+    told = " ".join(answer.sentences)
+    assert "w: overturns about 0 m: SLV with 7 records is unknown" in told and "as an outcome is unknown" in told
+
+
+def test_without_any_rocking_no_ratio_of_histories_is_said():
+    answer = rk.building(HOUSE, site=SITE, worst=1, scale=0.01, sets={"SLV": EXAMPLES / "verify" / "slv.yaml"})
+    (said,) = [each for each in answer.sentences if each.startswith("By time histories")]
+    assert said.endswith("SLV with 7 records is satisfied.")
+
+
+def test_the_period_of_a_floor_counts_before_that_of_the_building():
+    site = yaml.safe_load(SITE.read_text("utf-8")) | {"floor": {"z": 3.0, "H": 6.0, "T1": 0.4, "xi1": 0.05, "n": 2}}
+    with pytest.warns(DoubtWarning, match="T1 of the building is not used"):
+        beside = rk.building(HOUSE | {"T1": 0.1}, site=site)
+    alone = rk.building(HOUSE, site=site)
+    assert [row.ratio for row in beside.rows] == [row.ratio for row in alone.rows]
+    assert alone.to_dict()["T1"] is None and rk.building(HOUSE | {"T1": 0.1}, site=SITE).to_dict()["T1"] == 0.1
+
+
+def test_a_drawing_has_the_language_of_its_building(tmp_path):
+    file = tmp_path / "house.yaml"
+    file.write_text(json.dumps(HOUSE | {"language": "it"}), "utf-8")
+    titles = [text.get_text() for text in rk.draw(file).figure().findobj(lambda each: hasattr(each, "get_text"))]
+    assert any("pareti dall'esterno" in each for each in titles)
+
+
+def test_the_sheet_names_the_site_of_the_building(tmp_path):
+    (tmp_path / "site.yaml").write_text(SITE.read_text("utf-8"), "utf-8")
+    (tmp_path / "house.yaml").write_text(json.dumps(HOUSE | {"site": "site.yaml"}), "utf-8")
+    rk.building(tmp_path / "house.yaml", sheet=tmp_path / "sheet.html")
+    page = (tmp_path / "sheet.html").read_text("utf-8")
+    assert all(sha256((tmp_path / name).read_bytes()).hexdigest() in page for name in ("site.yaml", "house.yaml"))
 
 
 @pytest.mark.rest

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 from rocking_cli.ask.inputs import site_of
-from rocking_cli.errors import InputError, MechanismError, SolverError
+from rocking_cli.errors import InputError, MechanismError, Problem, SolverError
 from rocking_cli.io.json_text import json_text
 from rocking_cli.io.yaml_file import parse
+from rocking_cli.questions.building import study
 from rocking_cli.questions.building.description import building_of
 from rocking_cli.questions.building.made import NotMade, bending, corner, held_levels, joints, overturning, standing
 from rocking_cli.questions.building.study import CRACKS, LOWER, MechanismSearch, assess
@@ -224,6 +225,29 @@ class TestLeast:
         house = building(CROSSED)
         assert joints(house, house.walls[2]) == pytest.approx([k / 5 for k in range(30)])
         assert joints(house, house.walls[1]) == []
+
+    def test_the_crack_of_a_wall_without_its_gable_is_its_own(self):
+        """It is searched anew: the weakest with the gable may be another one."""
+        house = building(CROSSED)
+        search, wall = MechanismSearch(house, site_of(SITE)), house.walls[2]
+        rows = [each for each in search.of_wall(wall) if isinstance(each, study.Found)]
+        (row,) = [each for each in rows if each.made.without_gable and each.made.hinge[0] == 0.0]
+        about = partial(overturning, house, wall, 0.0, gable=False)
+        slopes = np.linspace(0, house.interlock.steepest, 25).tolist()
+        least = min(zeta(search, partial(about, each)) for each in slopes)
+        assert row.ratio <= least * (1 + TOLERANCE)
+
+    def test_restraints_that_hold_at_any_displacement_are_no_fall(self, monkeypatch):
+        """The code counts nothing of them: such a mechanism is named, and is not what falls at rest."""
+        house = building(PLAIN)
+        search = MechanismSearch(house, site_of(SITE))
+
+        def endless(*_):
+            raise InputError(Problem("a* does not vanish", field="ties"))
+
+        monkeypatch.setattr(study, "verify", endless)
+        assert search.ratio(overturning(house, house.walls[0], 0.0)) == inf
+        assert not any(each.falls for each in search.of_wall(house.walls[0]))
 
     def test_a_storey_that_openings_take_away_has_a_reason(self):
         """Nothing is left of it at the height of the opening, so that no hinge below turns all of it."""
