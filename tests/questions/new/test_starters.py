@@ -51,6 +51,7 @@ def test_the_building_of_both_languages_is_one():
     )
     names = dict(zip([each.name for each in italian.walls], [each.name for each in english.walls], strict=True))
     assert names == {"facciata": "front", "retro": "back", "sinistra": "left", "destra": "right"}
+    assert (english.language, italian.language) == (None, "it")
     assert english.levels == italian.levels and english.masonry.density == italian.masonry.density
     assert [each.thickness for each in english.walls] == [each.thickness for each in italian.walls]
     assert [each.connection for each in english.walls] == [each.connection for each in italian.walls]
