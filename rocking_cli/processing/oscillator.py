@@ -132,7 +132,7 @@ def response_spectrum(
         periods = periods_between(SHORTEST_PERIOD, LONGEST_PERIOD)
     period_array = np.atleast_1d(np.asarray(periods, dtype=np.float64))
     return ResponseSpectrum(
-        period_array, damping, np.array([_peak(motion, float(period), damping) for period in period_array])
+        period_array, damping, np.array([peak_displacement(motion, float(period), damping) for period in period_array])
     )
 
 
@@ -190,7 +190,7 @@ def _advance(growth: complex, forcing: NDArray[np.complex128]) -> NDArray[np.com
     return np.asarray((within + before[:, None] * powers[1:]).ravel()[: forcing.size])
 
 
-def _peak(motion: GroundMotion, period: float, damping: float) -> float:
+def peak_displacement(motion: GroundMotion, period: float, damping: float) -> float:
     """Return the peak displacement [m], with cubic interpolation between samples from values and slopes."""
     x, v, parts = relative_response(motion, period, damping)
     h = motion.dt / parts

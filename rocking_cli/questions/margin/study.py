@@ -10,11 +10,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from math import inf
 from statistics import NormalDist
+from typing import NamedTuple
 
 import numpy as np
 
 from rocking_cli.arrays import Reals
 from rocking_cli.dynamics.history import History
+from rocking_cli.dynamics.outcome import Outcomes
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.short_repr import short_repr
@@ -28,6 +30,24 @@ SHARE_LEVELS = (LEAST_SHARE, 0.5, 0.9)
 FACTOR_TOLERANCE = 1e-9  # relative difference of equal factors
 FACTORS: Reals = np.geomspace(0.2, 5.0, 60)
 FEW_FACTORS: Reals = np.geomspace(0.2, 5.0, 15)  # of free blocks
+
+
+class Limits(NamedTuple):
+    """What decides besides rocking whether a body falls, for a motion at a factor of 1.
+
+    Parameters
+    ----------
+    clearance : float
+        Slip from which it has fallen off an edge [m].
+    held_to : float or ndarray
+        Factor up to which something holds it at rest, over its slenderness.
+    ends_from : float or ndarray
+        Factor from which nothing is known of the motion of what it stands on, and it counts as unknown.
+    """
+
+    clearance: float = inf
+    held_to: Reals | float = 0.0
+    ends_from: Reals | float = inf
 
 
 @short_repr
@@ -139,6 +159,8 @@ def margin(
     motion: GroundMotion,
     *,
     factors: Reals = FACTORS,
+    limits: Limits | None = None,
+    threads: int | None = None,
     progress: Callable[[int], None] | None = None,
 ) -> Margin:
     """Compute the share of overturning as a function of the factor on a motion.
@@ -151,6 +173,10 @@ def margin(
         The ground motion at a factor of 1.
     factors : ndarray, shape (n,)
         Factors on the motion, positive and increasing; 1 is added.
+    limits : Limits, optional
+        What else decides whether a neighbour falls.
+    threads : int, optional
+        Number of threads; by default one for each processor.
     progress : callable, optional
         Called with the number of histories done since the last call; their total is the product of the numbers of
         factors (with 1), neighbours and polarities.
@@ -182,9 +208,12 @@ def margin(
         repeated = Draws(*(np.concatenate([values] * some.size) if some.size else values[:0] for values in draws))
         outcomes = simulate_neighbours(
             model, motion, repeated, scale=some.repeat(around.count), polarity=sign, progress=progress,
-            engine=conditions.by,
+            engine=conditions.by, threads=threads,
         )  # fmt: skip
         by_blocks, off_edge = by_blocks + int(outcomes.by_blocks.sum()), off_edge + int(outcomes.off_edge.sum())
+        if limits is not None:
+            strength = some.repeat(around.count) * repeated.amplitude
+            outcomes = limited(outcomes, limits, strength, repeated.slender)
         fell, doubtful = (of.reshape(some.size, around.count).mean(axis=1) for of in (outcomes.fell, outcomes.unknown))
         overturned[undecided] = np.maximum(overturned[undecided], fell)
         at_most[undecided] = np.maximum(at_most[undecided], fell + doubtful)
@@ -196,6 +225,18 @@ def margin(
         off_edge=off_edge, checked=model.joints is not None or conditions.engine == "blocks",
         pga_g=motion.of_ground.pga_g, polarities=tuple(polarities),
         on_floor=motion.ground is not None,
+    )  # fmt: skip
+
+
+def limited(outcomes: Outcomes, limits: Limits, strength: Reals, slender: Reals | float = 1.0) -> Outcomes:
+    """Return outcomes of a body where something else decides too, each at a factor on the motion and slenderness."""
+    held, ends = strength < limits.held_to * slender, strength >= limits.ends_from
+    off_edge = (outcomes.slip >= limits.clearance) & ~outcomes.fell
+    fell_to = np.where(held | ends, 0, np.where(off_edge, 1, outcomes.fell_to))
+    return replace(
+        outcomes, fell_to=fell_to, unknown=((outcomes.unknown & ~off_edge) | ends) & ~held,
+        peak_ratio=np.where(held, 0.0, np.where(fell_to | ends, np.nan, outcomes.peak_ratio)),
+        slip=np.where(held, 0.0, outcomes.slip),
     )  # fmt: skip
 
 

@@ -71,6 +71,9 @@ class SurveyAsked(MaybeUnderMotions, OfJoints, Around, InLanguage, Identity, Wit
         "Number of neighbouring motions to simulate as well, 0 for none.", WHOLE, ge=0, le=MAX_NEIGHBOURS,
         usual="200, or as many as take about a minute",
     )  # fmt: skip
+    remedies: Literal["first", "all"] = option(
+        "Remedies of objects of a list that may fall: the first that suffices, or all.", default="first"
+    )
     top: int = option("Number of structures to show.", WHOLE, default=20, ge=1)
     jobs: int | None = option("Number of processor cores to use.", WHOLE, ge=1, usual="one for each processor")
     in_processes: bool = option(

@@ -27,12 +27,14 @@ from rocking_cli.io.field_problems import MEANINGS, by_meaning, fields_at, is_pl
 from rocking_cli.io.spreadsheet import DECIMAL_COMMA, NUMBER, THOUSANDS, Row, Spreadsheet, unit_in
 from rocking_cli.io.starters import italian
 from rocking_cli.io.yaml_file import Document, Place, closed, parse, put, read_text, replace_at, spell, words
+from rocking_cli.questions.survey.inventory import Inventory, is_inventory
 from rocking_cli.text import cut, did_you_mean, one_line
 from rocking_cli.units import UnitError, number_of
 from rocking_cli.verification.check import read_site, site_in
 from rocking_cli.verification.code import SiteFile
 
 if TYPE_CHECKING:
+    from rocking_cli.processing.oscillator import Floor
     from rocking_cli.questions.survey.study import Survey
 
 T = TypeVar("T")
@@ -152,11 +154,6 @@ class StructureTable(Sequence["TableRow"]):
         self.of_floor.sort(key=lambda each: each.english)  # `floor` itself first, which the others change
         self.sites = [*dict.fromkeys(file for row in sheet.rows if (file := self.text(row, SITE_COLUMN)))]
         self._check_fields()
-
-    @classmethod
-    def read(cls, path: Path) -> StructureTable:
-        """Read a table from a CSV file. Raises `InputError` if it cannot be used."""
-        return cls(sheet_of(path), path.parent)
 
     def __len__(self) -> int:
         return len(self.sheet.rows)
@@ -452,14 +449,39 @@ def _with_unit(value: Any, unit: str) -> Any:
     return f"{value} {unit}" if unit and isinstance(value, int | float) and not isinstance(value, bool) else value
 
 
-def of_mapping(columns: Mapping[str, Sequence[Any]], name: str = "table") -> StructureTable:
-    """Return a table from columns, such as a frame of pandas; empty texts, None and NaN are fields not given."""
+def table_of(given: str | Path | Mapping[str, Sequence[Any]], floor: Floor | None) -> StructureTable | Inventory:
+    """Return the structures of a table, from its file or its columns, or the objects of a list.
+
+    Parameters
+    ----------
+    given : str, Path or mapping
+        The file, or columns such as a frame of pandas; empty texts, None and NaN are cells not given.
+    floor : Floor, optional
+        The floor to which motions are carried.
+
+    Raises
+    ------
+    InputError
+        If it cannot be used.
+    """
+    if isinstance(given, str | Path):
+        sheet, folder = sheet_of(given), Path(given).parent
+    else:
+        sheet, folder = _of_columns(given), Path()
+    names = {italian()["fields"].get(each.lower(), each.lower()): k for k, each in enumerate(sheet.headings)}
+    files = (row.cells[names[FILE_COLUMN]] for row in sheet.rows) if FILE_COLUMN in names else ()
+    describes = MECHANISM_COLUMN in names or any(each.lower().endswith(YAML_SUFFIXES) for each in files)
+    return StructureTable(sheet, folder) if describes or not is_inventory(sheet) else Inventory(sheet, floor)
+
+
+def _of_columns(columns: Mapping[str, Sequence[Any]]) -> Spreadsheet:
+    """Return the table of columns."""
     headings = tuple(str(each).strip() for each in columns)
     cells = [[_text(value) for value in columns[key]] for key in columns]
     if len({len(each) for each in cells}) > 1:
         raise InputError("the columns of a table must have the same length")
     rows = tuple(Row(k + 1, tuple(row)) for k, row in enumerate(zip(*cells, strict=True)))
-    return StructureTable(Spreadsheet(name, 0, headings, rows, decimal_comma=False), Path())
+    return Spreadsheet("table", 0, headings, rows, decimal_comma=False)
 
 
 def _text(value: Any) -> str:

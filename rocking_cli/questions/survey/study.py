@@ -23,6 +23,9 @@ from rocking_cli.errors import InputError, Problem, RockingError, SolverError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.io.spreadsheet import Spreadsheet
 from rocking_cli.names import OPENING
+from rocking_cli.questions.margin.study import FACTORS, Limits, limited, margin
+from rocking_cli.questions.survey.inventory import Inventory, Item
+from rocking_cli.questions.survey.remedies import SAFE_SHARE, Remedy, remedies
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure, check_opening
 from rocking_cli.studies.conclusion import Concluded, Conclusion, NeighbourShare
@@ -34,6 +37,8 @@ STRUCTURES_PER_CHUNK = 8  # in the memory of a thread at a time: the tables of e
 
 MAX_SAMPLES = 400_000_000  # of motions times structures, polarities and neighbours: under a minute on two processors
 NO_NEIGHBOURS = Neighbourhood(0)
+LEVELS = (SAFE_SHARE, 0.5)
+"""Shares of neighbours that overturn, for which objects of a list get the peaks of a motion."""
 MAX_DEVIATIONS = 5.0  # standard deviations beyond which no neighbour is drawn
 
 
@@ -104,6 +109,32 @@ class SurveyResponse:
         return self.share.highest if self.share is not None else self.overturned + (self.unknown or 0.0)
 
 
+class Topples(NamedTuple):
+    """How strong a ground motion topples a structure, by its margin.
+
+    Parameters
+    ----------
+    motion : str
+        Name of the motion.
+    pga, pgv : float
+        Its peaks [standard gravity, m/s], those of the ground.
+    factors : mapping of float to float or None
+        The least factor on it at which a share of the neighbours of 0.05 and 0.5 overturn or have an unknown outcome;
+        None if that is at none of those tried.
+    tried : tuple of float
+        The least and the largest factor tried.
+    share : NeighbourShare
+        The share at a factor of 1.
+    """
+
+    motion: str
+    pga: float
+    pgv: float
+    factors: Mapping[float, float | None]
+    tried: tuple[float, float]
+    share: NeighbourShare
+
+
 @short_repr
 @dataclass(frozen=True)
 class Surveyed:
@@ -156,6 +187,10 @@ class Surveyed:
         Code of its site.
     z : float, optional
         Height of its base above the foundation [m], 0 on the ground; None if its code has no floors.
+    topples : sequence of Topples
+        How strong each of the motions must be to topple it, of objects of a list.
+    remedies : sequence of Remedy
+        What to do, of objects of a list that may fall: the first that suffices, or all, if requested.
     """
 
     row: int
@@ -185,11 +220,31 @@ class Surveyed:
     site: str | None = None
     code: str | None = None
     z: float | None = None
+    topples: Sequence[Topples] = ()
+    remedies: Sequence[Remedy] = ()
 
     @property
     def caution(self) -> str | None:
         """The cautions as one text; None without any."""
         return " ".join(self.cautions) or None
+
+    @property
+    def danger(self) -> str | None:
+        """Whether an object of a list "falls", "may fall" or "stands", by its neighbours; None if they are not known.
+
+        It falls if half or more of the neighbours of the worst motion overturn or have an unknown outcome, and stands
+        if at most 5 % do.
+        """
+        if not self.topples:
+            return None
+        worst = max(each.share.highest for each in self.topples)
+        return "stands" if worst <= LEVELS[0] else "may fall" if worst < LEVELS[1] else "falls"
+
+    def toppled_from(self, level: float) -> tuple[float | None, float | None]:
+        """Return the least PGA [g] and PGV [m/s] of the motions at which a share topples it; None where none does."""
+        reached = [(each, factor) for each in self.topples if (factor := each.factors[level]) is not None]
+        pga, pgv = ([getattr(each, key) * factor for each, factor in reached] for key in ("pga", "pgv"))
+        return min(pga, default=None), min(pgv, default=None)
 
 
 @dataclass(frozen=True)
@@ -275,6 +330,8 @@ class Survey:
         The unit of each number that the code of the site has for a row, by its name.
     sheet : Spreadsheet, optional
         The table from which the structures were read.
+    items : sequence of Item
+        The objects of a list, by row; empty if the structures are not those of a list.
     """
 
     rows: Sequence[Surveyed]
@@ -288,6 +345,7 @@ class Survey:
     polarities: Sequence[int] = ()
     pga: Sequence[float] = ()
     floor_pga: Sequence[float] = ()
+    items: Sequence[Item] = ()
 
     def cells(self, found: Surveyed) -> Sequence[str]:
         """Return the cells of a structure in its table; none without a table."""
@@ -304,6 +362,7 @@ def survey(
     bounded: bool = False,
     opening: float = OPENING,
     cautions: Callable[[Mechanism], Sequence[str]] = Mechanism.cautions,
+    every_remedy: bool = False,
     threads: int | None = None,
     processes: int | None = None,
     progress: Callable[[int], None] | None = None,
@@ -329,6 +388,8 @@ def survey(
         Largest opening of a joint, over D_cr, up to which a history is known.
     cautions : callable
         Returns the cautions on a structure.
+    every_remedy : bool
+        Whether to try every remedy of an object, and not only up to the first that suffices.
     threads : int, optional
         Number of threads; by default one for each processor.
     processes : int, optional
@@ -350,7 +411,7 @@ def survey(
     samples = len(entries) * len(polarities) * sum(motion.npts for motion in motions)
     if reduced := bounded and samples * around.count > MAX_SAMPLES:
         around = replace(around, count=MAX_SAMPLES // samples)
-    part = partial(_part, entries, Setting(motions, polarities, around, by_code, site, opening, cautions))
+    part = partial(_part, entries, Setting(motions, polarities, around, by_code, site, opening, cautions, every_remedy))
 
     def work(first: int, stop: int) -> None:
         results[first:stop] = part(first, stop)
@@ -369,7 +430,8 @@ def survey(
     units = {name: number.unit for code in used for name, number in codes()[code].row_numbers.items()}
     peaks = [each.of_ground.pga_g for each in motions], [each.pga_g for each in motions if each.ground is not None]
     sheet = getattr(entries, "sheet", None)
-    return Survey(good, bad, names, by, units, sheet, around, reduced, polarities, *peaks)
+    items = entries.items if isinstance(entries, Inventory) else ()
+    return Survey(good, bad, names, by, units, sheet, around, reduced, polarities, *peaks, items)
 
 
 class Setting(NamedTuple):
@@ -382,6 +444,7 @@ class Setting(NamedTuple):
     site: SiteFile | None
     opening: float
     cautions: Callable[[Mechanism], Sequence[str]]
+    every_remedy: bool = False
 
 
 def _part(
@@ -399,13 +462,16 @@ def _part(
             ready[k] = Structure(weaker or made, opening=setting.opening)
             site = entry.site(setting.site) if setting.by_code else None
             asked = questioned(Structure(made), site) if site is not None else []
-            odd = [*doubts(made), *(f"{each.name} {each.words}" for each in asked)]
+            odd = [*getattr(entry, "questions", ()), *doubts(made), *(f"{each.name} {each.words}" for each in asked)]
             alone = replace(_alone(place, entry, ready[k], setting, site), doubt="; ".join(odd) or None)
             rows[k] = replace(
-                alone, side="depth" if weaker is not None else None, remarks=made.remarks,
+                alone, side="depth" if weaker is not None else None,
+                remarks=(*made.remarks, *getattr(entry, "remarks", ())),
                 width_alone=made.depth is None and made.may_rock_about_depth(),
             )  # fmt: skip
-            if _may_move(ready[k], setting):
+            if isinstance(entry, Item):
+                ready[k].model("nonlinear")
+            elif _may_move(ready[k], setting):
                 ready[k].model("nonlinear")
                 moving[k] = ready[k]
         except RockingError as error:
@@ -418,6 +484,12 @@ def _part(
     if motions := setting.motions:
         under = _under(list(moving.values()), setting)
         answers = dict(zip(moving, under, strict=True))
+        objects = dict[int, _OfObject]()
+        for k, structure in ready.items():
+            entry = entries[first + k]
+            if isinstance(entry, Item):
+                objects[k] = _of_object(entry, structure, setting)
+                answers[k] = objects[k].answer
         count = setting.around.count
         none = NeighbourShare(0.0, 0.0, count) if count else None
         for k, structure in ready.items():
@@ -428,8 +500,59 @@ def _part(
             if isinstance(answer, SolverError):
                 rows[k] = FailedEntry(one.row, entries[first + k].line, one.name, answer)
             else:
-                rows[k] = replace(one, under=answer)
+                _, topples, advice = objects.get(k, (answer, (), ()))
+                rows[k] = replace(one, under=answer, topples=topples, remedies=advice)
     return rows
+
+
+class _OfObject(NamedTuple):
+    """Response of an object of a list, how strong motions must be to topple it, and what to do."""
+
+    answer: SurveyResponse | SolverError
+    topples: Sequence[Topples] = ()
+    remedies: Sequence[Remedy] = ()
+
+
+def _of_object(item: Item, structure: Structure, setting: Setting) -> _OfObject:
+    """Return what an object does under the motions of what it stands on; without neighbours only its response."""
+    around = setting.around
+    on_base = setting._replace(motions=item.under(setting.motions), around=replace(around, count=0))
+    limits = [item.limits(each) for each in on_base.motions]
+    try:
+        (answer,) = _under([structure], on_base, limits)
+        if not around.count or isinstance(answer, SolverError):
+            return _OfObject(answer)
+        conditions = Conditions(structure, ["nonlinear"], setting.polarities, around=around)
+        topples = [_topples(conditions, each, limit) for each, limit in zip(on_base.motions, limits, strict=True)]
+        low, high = (fmean(getattr(each.share, key) for each in topples) for key in ("lowest", "highest"))
+        answer = replace(answer, share=NeighbourShare(low, high, around.count))
+        if max(each.share.highest for each in topples) <= SAFE_SHARE:
+            return _OfObject(answer, topples)
+        advice = list[Remedy]()
+        for each in remedies(item, setting.motions, setting.polarities, around):
+            advice.append(each)
+            if each.suffices and not each.against and not setting.every_remedy:
+                break
+    except SolverError as error:
+        return _OfObject(error)
+    return _OfObject(answer, topples, advice)
+
+
+def _topples(conditions: Conditions, motion: GroundMotion, limits: Limits) -> Topples:
+    """Return how strong a motion must be; a body that only slides, and may slide as far as it will, never falls."""
+    ground, model = motion.of_ground, conditions.model
+    pgv = float(np.abs(ground.velocity).max())
+    if limits == Limits() and motion.vertical is None and (foot := model.sliding) is not None:
+        slender = conditions.around.drawn(model).slender
+        free = all(each.distance == inf for each in foot.clear)
+        if free and foot.holds(slender, *np.zeros((2, 1))).all():
+            tried = float(FACTORS[0]), float(FACTORS[-1])
+            share = NeighbourShare(0.0, 0.0, conditions.around.count)
+            return Topples(motion.name, ground.pga_g, pgv, dict.fromkeys(LEVELS), tried, share)
+    found = margin(conditions, motion, limits=limits, threads=1)
+    factors = {level: found.first(level, unknown=True) for level in LEVELS}
+    tried = float(found.factors[0]), float(found.factors[-1])
+    return Topples(motion.name, ground.pga_g, pgv, factors, tried, found.share)
 
 
 def _alone(
@@ -480,8 +603,13 @@ def _may_move(structure: Structure, setting: Setting) -> bool:
     return any(each.vertical is not None or each.pga_g >= least for each in setting.motions)
 
 
-def _under(structures: Sequence[Structure], setting: Setting) -> list[SurveyResponse | SolverError]:
-    """Return the response of each of some structures to ground motions; an error if a motion cannot be simulated."""
+def _under(
+    structures: Sequence[Structure], setting: Setting, limits: Sequence[Limits] = ()
+) -> list[SurveyResponse | SolverError]:
+    """Return the response of each of some structures to ground motions; an error if a motion cannot be simulated.
+
+    `limits` are those of each motion, of a single structure.
+    """
     if not structures:
         return []
     models = [structure.model("nonlinear") for structure in structures]
@@ -495,6 +623,9 @@ def _under(structures: Sequence[Structure], setting: Setting) -> list[SurveyResp
     which = np.array(places)
     runs = Runs.of(which[:, 0], which[:, 1], polarity=which[:, 2])
     outcomes = respond_many(models, motions, runs, threads=1, only_peaks=True)
+    if limits:
+        held, ends = (np.array([getattr(each, key) for each in limits])[which[:, 1]] for key in Limits._fields[1:])
+        outcomes = limited(outcomes, Limits(limits[0].clearance, held, ends), np.ones(len(which)))
     each = [_of_one(model, which[:, 0] == i, which[:, 1], outcomes, motions) for i, model in enumerate(models)]
     for i, (structure, one) in enumerate(zip(structures, each, strict=True)):
         if setting.around.count and isinstance(one, SurveyResponse):

@@ -19,6 +19,7 @@ from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.text import one_line
 
 if TYPE_CHECKING:
+    from rocking_cli.processing.oscillator import Floor
     from rocking_cli.questions.survey.study import Survey, SurveyEntry
     from rocking_cli.studies.provenance import TitleBlock
     from rocking_cli.verification.code import SiteFile
@@ -63,7 +64,8 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
 
     where = None if asked.site is None else site_of(asked.site)
     language_of(asked.language, where, watch)
-    entries, requested = _entries(asked.structures, watch), asked.ground_motions
+    requested = asked.ground_motions
+    entries = _entries(asked.structures, requested.reading.floor, watch)
     first, by_code = _first_site(entries, where), where is not None or bool(getattr(entries, "sites", ()))
     say = texts_in(language := language_of(asked.language, first, watch))
     if asked.sheets is not None and not by_code:
@@ -84,7 +86,8 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
     with watch.progress(len(entries), "structures") as advance:
         result = study(
             entries, shaken, asked.signs, site=where, around=asked.neighbourhood(Neighbourhood.count if shaken else 0),
-            bounded=asked.neighbours is None, opening=asked.opening, cautions=cautions_of, threads=asked.jobs,
+            bounded=asked.neighbours is None, opening=asked.opening, cautions=cautions_of,
+            every_remedy=asked.remedies == "all", threads=asked.jobs,
             processes=processes if asked.in_processes else None, progress=_timed(advance, len(entries), watch),
         )  # fmt: skip
     _tell_bad(result, "structures" if sheet is None else sheet.file, watch)
@@ -126,15 +129,14 @@ def _tell_bad(found: Survey, file: str, watch: Watcher) -> None:
         watch.incomplete(line)
 
 
-def _entries(given: Any, watch: Watcher) -> Sequence[SurveyEntry]:
-    from rocking_cli.questions.survey.structure_table import StructureTable, of_mapping
+def _entries(given: Any, floor: Floor | None, watch: Watcher) -> Sequence[SurveyEntry]:
+    from rocking_cli.questions.survey.inventory import Inventory
+    from rocking_cli.questions.survey.structure_table import table_of
     from rocking_cli.questions.survey.study import MadeStructure
 
-    table = StructureTable.read(Path(given)) if isinstance(given, str | Path) else given
-    if not isinstance(table, StructureTable):
-        if isinstance(given, Mapping) or hasattr(given, "columns"):
-            return of_mapping(given)
+    if not isinstance(given, str | Path | Mapping) and not hasattr(given, "columns"):
         return [MadeStructure(structure_of(each, watch).mechanism) for each in given]
+    table = table_of(given, floor)
     if not len(table):
         raise InputError(Problem("the table has no rows below its headings", table.sheet.file))
     if table.sheet.encoding == "Windows-1252":
@@ -144,6 +146,8 @@ def _entries(given: Any, watch: Watcher) -> Sequence[SurveyEntry]:
     if short := [row.line for row in table.sheet.rows if row.short]:
         lines = f"line {short[0]}" if len(short) == 1 else f"{len(short):,} lines, first in line {short[0]}"
         watch.warn(f"{table.sheet.file}: fewer cells than headings in {lines}: missing cells are read as empty")
+    for note in table.notes if isinstance(table, Inventory) else ():
+        watch.note(note)
     return table
 
 

@@ -1,0 +1,780 @@
+"""A collection as its owner lists it: objects with their sides, weights, rooms and supports, each as a structure.
+
+A list has no column of mechanisms. Its words are those of `data/inventory.toml`.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cache, cached_property
+from importlib.resources import files
+from math import inf, pi
+from typing import Any, NamedTuple
+from unicodedata import combining, normalize
+
+from pydantic import ValidationError
+
+from rocking_cli.core import Direction, Mechanism
+from rocking_cli.core.registry import Registry
+from rocking_cli.errors import InputError, Problem, named
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.io.field_problems import of_arguments
+from rocking_cli.io.spreadsheet import Row, Spreadsheet, unit_in
+from rocking_cli.processing.oscillator import Floor, peak_displacement
+from rocking_cli.questions.margin.study import Limits
+from rocking_cli.text import cut, did_you_mean, one_line
+from rocking_cli.units import UnitError, kind_of, read
+from rocking_cli.verification.code import SiteFile
+
+UNITS = {
+    "height": "m", "width": "m", "depth": "m", "diameter": "m", "foot": "m", "foot_depth": "m", "centre": "m",
+    "mass": "kg", "friction": "", "edge": "m", "gap": "m", "wax_area": "m2", "wax_tension": "Pa", "wax_shear": "Pa",
+    "wire": "N", "wire_height": "m", "period": "s", "damping": "%", "stroke": "m",
+}  # fmt: skip
+"""Fields that are numbers, with the unit in which they are kept; a damping in % is kept as a ratio."""
+SIDES = ("height", "width", "depth", "diameter", "foot", "foot_depth", "centre", "mass")
+SAME_SIDE = 0.01  # relative difference of sides that count as equal
+LIGHTEST = 0.02  # of the mass of a solid: a lighter body is questioned
+FAR_GROUND = 40.0  # m: half of the width of the ground below objects on objects, which none of them leaves
+DEFAULT_DAMPING = 0.05
+BALLAST_HEIGHT = 0.05  # of the middle of what is put in its foot, over the height of an object
+_LETTERED = re.compile(r"(?i)\b(h|w|d|l|p|ø|diam|dia|alt|larg|prof)\b\.?\s*:?\s*(\d+(?:[.,]\d+)?)")
+_LETTERS = {"h": "height", "alt": "height", "w": "width", "l": "width", "larg": "width", "d": "depth", "p": "depth",
+            "prof": "depth", "ø": "diameter", "diam": "diameter", "dia": "diameter"}  # fmt: skip
+_QUANTITY = re.compile(r"(?<![\w.,])(\d+(?:[.,]\d+)?)\s*(kPa|MPa|Pa|kN|N|mm2|cm2|m2|mm|cm|m|s|%)?(?![\w])")
+_CLAUSES = re.compile(r"\s*[;+]\s*|,\s+|,(?=\D)")
+
+
+@cache
+def catalogue() -> Mapping[str, Any]:
+    """Return the words of lists, by kind of word and then by what they mean."""
+    return tomllib.loads((files("rocking_cli") / "data" / "inventory.toml").read_text(encoding="utf-8"))
+
+
+def plain(text: str) -> str:
+    """Return a text in small letters, without accents and signs but those between words and numbers.
+
+    Examples
+    --------
+    >>> plain("Inv. no."), plain("Profondità"), plain("N_INV")
+    ('inv no', 'profondita', 'n inv')
+    """
+    letters = "".join(sign for sign in normalize("NFKD", text.casefold()) if not combining(sign))
+    return " ".join(re.sub(r"[^\w°ø%]+|_", " ", letters).split())
+
+
+class Isolator(NamedTuple):
+    """A base that lets an object move sideways: period [s], damping ratio, and stroke [m]."""
+
+    period: float
+    damping: float
+    stroke: float
+
+    @property
+    def floor(self) -> Floor:
+        """The oscillator that it is, as a floor."""
+        return Floor(self.period, self.damping, 1.0, 1.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Item:
+    """An object of a collection; lengths in m, masses in kg, stresses in Pa, forces in N, None where not given.
+
+    Parameters
+    ----------
+    inventory : Inventory
+        The list.
+    row : Row
+        Its row.
+    code, title, room, kind, material : str
+        Number, name, room, kind and material, as they are written, the kind as the list is read; empty if not given.
+    sizes : mapping of str to float
+        What the row gives of `UNITS`, by field.
+    on : str
+        Code of the object it stands on; empty for none.
+    raised : bool
+        Whether it stands on a shelf, or on something else that is taken as rigid.
+    floor : Floor, optional
+        The floor it stands on; None for that of the motions.
+    storey : int, optional
+        Number of storeys below it.
+    plane : str
+        "width" if it cannot rock about its depth; otherwise empty.
+    ballast : float
+        Mass put in its foot [kg].
+    remarks, questions : sequence of str
+        How the row was read, and what looks like a mistake in it.
+    wrong : InputError, optional
+        Why the row cannot be used.
+    """
+
+    inventory: Inventory
+    row: Row
+    code: str = ""
+    title: str = ""
+    room: str = ""
+    kind: str = "block"
+    material: str = ""
+    sizes: Mapping[str, float] = field(default_factory=dict)
+    on: str = ""
+    raised: bool = False
+    floor: Floor | None = None
+    storey: int | None = None
+    plane: str = ""
+    ballast: float = 0.0
+    remarks: Sequence[str] = ()
+    questions: Sequence[str] = ()
+    wrong: InputError | None = None
+
+    @property
+    def line(self) -> int:
+        """Line of the row."""
+        return self.row.line
+
+    @property
+    def name(self) -> str:
+        """Code and name of the object."""
+        return " ".join(filter(None, [self.code, self.title])) or f"row {self.line}"
+
+    @property
+    def is_round(self) -> bool:
+        """Whether its foot is a circle."""
+        return "diameter" in self.sizes
+
+    @property
+    def is_hollow(self) -> bool:
+        """Whether there is room for sand or weights in it."""
+        return self.kind in catalogue()["of_kinds"]["hollow"]
+
+    @property
+    def cracks(self) -> bool:
+        """Whether its material cracks rather than bends."""
+        return self.material != "" and any(brittle for _, brittle, _ in _materials_in(self.material))
+
+    @property
+    def mass(self) -> float | None:
+        """Its mass [kg]."""
+        return self.sizes.get("mass")
+
+    @property
+    def height(self) -> float:
+        """Its height [m]."""
+        return self.sizes["height"]
+
+    @property
+    def centre(self) -> float:
+        """Height of its centroid [m]."""
+        return self.sizes.get("centre", self.height / 2)
+
+    def widths(self, *, turned: bool = False) -> tuple[float, float]:
+        """Return the width of the body and of its foot in a plane [m]: that of its width, or turned, of its depth."""
+        sizes = self.sizes
+        if self.is_round:
+            return sizes["diameter"], sizes.get("foot", sizes["diameter"])
+        width, depth = (sizes.get(key) for key in ("width", "depth"))
+        body = (depth or width) if turned else (width or depth)
+        foot = sizes.get("foot_depth", sizes.get("foot")) if turned else sizes.get("foot", sizes.get("foot_depth"))
+        assert body is not None  # checked when it was read
+        return body, body if foot is None else foot
+
+    @property
+    def least_foot(self) -> float:
+        """The smaller side of its foot [m]."""
+        return min(self.widths(turned=turned)[1] for turned in (False, True))
+
+    @property
+    def chain(self) -> list[Item]:
+        """It and the objects below it, the lowest first. Raises `InputError` if one is missing, or they go round."""
+        chain = [self]
+        while chain[0].on:
+            below = self.inventory.by_code.get(chain[0].on)
+            if below is None or below in chain:
+                what = f"stands on {cut(chain[0].on)}, which is not in the list" if below is None else (
+                    "stands on itself, as " + ", ".join(f"{each.code} stands on {each.on}" for each in chain)
+                )  # fmt: skip
+                raise InputError(self._problem(what, "support"))
+            chain.insert(0, below)
+        return chain
+
+    @property
+    def carried(self) -> list[Item]:
+        """The objects that stand on it, and those on them."""
+        direct = [each for each in self.inventory.items if each.on and each.on == self.code and each is not self]
+        return [each for one in direct for each in (one, *one.carried)]
+
+    def _problem(self, message: str, key: str = "", hint: str | None = None) -> Problem:
+        return Problem(message, self.inventory.sheet.file, self.line, field=self.inventory.heading(key), hint=hint)
+
+    def make(self) -> Mechanism:
+        """Return the structure: of its two planes the weaker.
+
+        Raises
+        ------
+        InputError
+            If the row cannot be used: the file, its line, and the heading of the column.
+        """
+        if self.wrong is not None:
+            raise self.wrong
+        chain = self.chain
+        for each in chain[:-1]:
+            if each.wrong is not None:
+                raise InputError(self._problem(f"stands on {each.name}, whose row cannot be used", "support"))
+        planes = [self._built(chain, turned=turned) for turned in self._planes(chain)]
+        return min(planes, key=lambda each: round(min(map(each.uplift, Direction)), 9))
+
+    def _planes(self, chain: Sequence[Item]) -> tuple[bool, ...]:
+        if self.plane == "width" or all("depth" not in each.sizes for each in chain):
+            return (False,)
+        return (False,) if len(chain) == 1 and not self._has_foot else (False, True)  # a block knows its weaker side
+
+    @property
+    def _has_foot(self) -> bool:
+        widths = [self.widths(turned=turned) for turned in (False, True)]
+        return "centre" in self.sizes or any(abs(foot / body - 1) > SAME_SIDE for body, foot in widths)
+
+    def _built(self, chain: Sequence[Item], *, turned: bool) -> Mechanism:
+        if len(chain) == 1:
+            mechanism, fields = self._alone(turned=turned)
+        else:
+            mechanism, fields = "assembly", self._stacked(chain, turned=turned)
+        cls = _registry()[mechanism]
+        try:
+            made: Mechanism = cls.from_fields({"name": self.name, **fields})
+        except ValidationError as error:
+            problems = of_arguments(cls, error.errors(include_url=False), mechanism)
+            raise InputError(*(replace(each, file=self.inventory.sheet.file, line=self.line) for each in problems)) \
+                from None  # fmt: skip
+        return made
+
+    def _alone(self, *, turned: bool) -> tuple[str, dict[str, Any]]:
+        """Return mechanism and fields of the object alone, with what it carries as masses."""
+        (body, foot), mass, sizes = self.widths(turned=turned), self.mass, self.sizes
+        fields: dict[str, Any] = {"friction": sizes["friction"]} if "friction" in sizes else {}
+        if "gap" in sizes:
+            fields["stops"] = [
+                {"name": side, "point": [sign * body / 2, self.height], "gap": sign * sizes["gap"]}
+                for side, sign in (("right neighbour", 1), ("left neighbour", -1))
+            ]
+        if carried := self.carried:
+            tops = {self.code: self.height}
+            for each in carried:
+                tops[each.code] = tops[each.on] + each.height
+            fields["loads"] = [
+                {"name": each.name, "mass": each.weighed(), "at": [0.0, tops[each.on] + each.centre]}
+                for each in carried
+            ]  # fmt: skip
+        if self.ballast:
+            low = {"name": "ballast", "mass": self.ballast, "at": [0.0, BALLAST_HEIGHT * self.height]}
+            fields["loads"] = [*fields.get("loads", ()), low]
+        if not self._has_foot:
+            given: dict[str, Any] = {"mass": mass} if mass is not None else {}
+            if self.is_round:
+                given["section"] = "round"
+            elif "depth" in sizes:
+                given["depth"] = sizes["depth"]
+            given |= {"plane": "width"} if self.plane == "width" else {}
+            return "block", {**fields, **given, "width": body, "height": self.height}
+        return "rigid_body", {
+            **fields, **self._of_body(body, 0.0), "left_foot": [-foot / 2, 0.0], "right_foot": [foot / 2, 0.0],
+            "polygon": self._silhouette(body, foot, 0.0),
+        }  # fmt: skip
+
+    def _of_body(self, body: float, base: float) -> dict[str, Any]:
+        """Return mass, centroid and inertia, about it, of a uniform body as wide and high as the object."""
+        mass = 1.0 if self.mass is None else self.mass
+        across = 0.75 * body**2 if self.is_round else body**2
+        inertia = mass * (across + self.height**2) / 12
+        return {"mass": mass, "centroid": [0.0, base + self.centre], "inertia": inertia}
+
+    def _silhouette(self, body: float, foot: float, base: float) -> list[list[float]]:
+        """Return corners from foot to top: widest in the middle if the foot is smaller, on a plinth if it is larger."""
+        if foot > body:
+            level = base + self.height / 10
+            right = [[foot / 2, base], [foot / 2, level], [body / 2, level], [body / 2, base + self.height]]
+        else:
+            right = [[foot / 2, base], [body / 2, base + self.height / 2], [foot / 2, base + self.height]]
+        return [*right, *([-x, y] for x, y in reversed(right))]
+
+    def weighed(self) -> float:
+        """Return its mass [kg]. Raises `InputError` if it is not given, although one stands on another."""
+        if self.mass is None:
+            raise InputError(self._problem("has no weight, which is needed as it stands on another object", "mass"))
+        return self.mass
+
+    def _stacked(self, chain: Sequence[Item], *, turned: bool) -> dict[str, Any]:
+        """Return the fields of an assembly: the objects below it, it, and what it carries as masses."""
+        blocks, frictions, base, below = dict[str, Any](), dict[str, float](), 0.0, "floor"
+        for each in chain:
+            each.weighed()
+            body, foot = each.widths(turned=turned)
+            if each._has_foot:
+                shape = {"polygon": each._silhouette(body, foot, base), **each._of_body(body, base)}
+            else:
+                x, top = body / 2, base + each.height
+                shape = {"polygon": [[-x, base], [x, base], [x, top], [-x, top]], "mass": each.mass}
+            blocks[each.name] = shape
+            if "friction" in each.sizes:
+                frictions[f"{below} and {each.name}"] = each.sizes["friction"]
+            base, below = base + each.height, each.name
+        floor = [[-FAR_GROUND, -1.0], [FAR_GROUND, -1.0], [FAR_GROUND, 0.0], [-FAR_GROUND, 0.0]]
+        fields: dict[str, Any] = {"blocks": blocks, "ground": {"floor": {"polygon": floor}}}
+        fields |= {"friction_of": frictions} if frictions else {}
+        if carried := self.carried:
+            fields["loads"] = [
+                {"name": each.name, "body": self.name, "mass": each.weighed(), "at": [0.0, base + each.centre]}
+                for each in carried
+            ]
+        return fields
+
+    @property
+    def base(self) -> tuple[Floor | None, Isolator | None]:
+        """The floor, if it is not that of the motions, and the isolator on which it and what is below it stand."""
+        lowest, sizes = self.chain[0], self.chain[0].sizes
+        isolated = Isolator(sizes["period"], sizes.get("damping", DEFAULT_DAMPING), sizes["stroke"]) \
+            if "period" in sizes else None  # fmt: skip
+        return lowest.floor, isolated
+
+    def under(self, motions: Sequence[GroundMotion]) -> Sequence[GroundMotion]:
+        """Return the motions of what it stands on, for those of the ground, or of a floor."""
+        if self.wrong is not None or (base := self.base) == (None, None):
+            return motions
+        return self.inventory.motions_on(base, motions)
+
+    def limits(self, motion: GroundMotion) -> Limits:
+        """Return what decides besides rocking under a motion of what it stands on, at factors on it."""
+        hold, (_, isolator) = self.holds_to(), self.base
+        ends = inf
+        if isolator is not None:
+            below = self.inventory.below_isolator(self, motion)
+            ends = isolator.stroke / peak_displacement(below, isolator.period, isolator.damping)
+        peak = motion.pga_g
+        return Limits(self.room_to_slide, hold / peak if peak > 0 else 0.0, ends)
+
+    @property
+    def room_to_slide(self) -> float:
+        """How far it may slide before its foot passes an edge [m]; infinite if there is none, or it does not slide."""
+        if "friction" not in self.sizes and not self.on:
+            return inf
+        return self.sizes.get("edge", inf)
+
+    def holds_to(self) -> float:
+        """Return the acceleration up to which wax and wires hold it at rest [standard gravity]; 0 without any.
+
+        Notes
+        -----
+        They hold like glass: with all of their strength up to it, and not at all beyond. Wax of tension T pulls in the
+        middle of the foot, of width b, and a wire with the force F at the height z: about the edge of the foot
+        m a h_c = (m g + T) b/2 + F z. Wax alone also holds the shear m a.
+        """
+        sizes, mass = self.sizes, self.mass
+        if mass is None or not {"wax_area", "wire"} & set(sizes):
+            return 0.0
+        area, force = sizes.get("wax_area", 0.0), sizes.get("wire", 0.0)
+        weight = mass * STANDARD_GRAVITY
+        pull = area * sizes.get("wax_tension", 0.0)
+        height = sizes.get("wire_height", self.centre)
+        turns = ((weight + pull) * self.least_foot / 2 + force * height) / (weight * self.centre)
+        slides = (area * sizes.get("wax_shear", 0.0) + force) / weight if area and "friction" not in sizes else inf
+        return min(turns, slides)
+
+    def site(self, usual: SiteFile | None) -> SiteFile | None:
+        """Return the site of all objects."""
+        return usual
+
+
+class Inventory(Sequence[Item]):
+    """The objects of a list.
+
+    Parameters
+    ----------
+    sheet : Spreadsheet
+        The list.
+    floor : Floor, optional
+        The floor to which motions are carried, whose building has the storeys of the rows.
+
+    Raises
+    ------
+    InputError
+        If it has no column of heights, or of widths or diameters, or a heading has no unit.
+    """
+
+    def __init__(self, sheet: Spreadsheet, floor: Floor | None = None) -> None:
+        self.sheet, self.floor = sheet, floor
+        self.places, self.unread = self._columns()
+        self.items = [self._item(row) for row in sheet.rows]
+        self.by_code: dict[str, Item] = {}
+        for k, each in enumerate(self.items):
+            if each.code and self.by_code.setdefault(each.code, each) is not each:
+                first = self.by_code[each.code].line
+                self.items[k] = replace(each, questions=(*each.questions, f"code {each.code} is also in line {first}"))
+        self._moved: dict[Any, tuple[GroundMotion, ...]] = {}
+
+    def __len__(self) -> int:
+        return len(self.items)
+
+    def __getitem__(self, k: Any) -> Any:
+        return self.items[k]
+
+    def heading(self, key: str) -> str | None:
+        """Return the heading of the column of a field."""
+        return cut(one_line(self.sheet.headings[self.places[key][0]])) if key in self.places else key or None
+
+    @cached_property
+    def notes(self) -> list[str]:
+        """How the list was read, as sentences."""
+        fields = ", ".join(f"{self.heading(key)} ({key.replace('_', ' ')})" for key in self.places)
+        notes = [f"a list of {len(self)} objects, by its columns {fields}"]
+        if self.unread:
+            notes.append(f"columns that are kept and not read: {'; '.join(self.unread)}")
+        if any(each.storey for each in self.items) and self.floor is None:
+            notes.append(f"storeys have no effect on motions: give {named('floor')}, the building with its storeys n")
+        return notes
+
+    def motions_on(
+        self, base: tuple[Floor | None, Isolator | None], motions: Sequence[GroundMotion]
+    ) -> Sequence[GroundMotion]:
+        """Return the motions of a floor, or of an isolator on it, made once."""
+        key = base, *map(id, motions)
+        if key not in self._moved:
+            floor, isolator = base
+            on_floor = [each if floor is None else floor.of(each.of_ground) for each in motions]
+            if isolator is not None:
+                on_floor = [replace(isolator.floor.of(each), ground=each.of_ground) for each in on_floor]
+            self._moved[key] = tuple(on_floor)
+        return self._moved[key]
+
+    def below_isolator(self, item: Item, motion: GroundMotion) -> GroundMotion:
+        """Return the motion below the isolator of an object, for that on it."""
+        floor, _ = item.base
+        floor = self.floor if floor is None else floor
+        return motion.of_ground if floor is None else floor.of(motion.of_ground)
+
+    def _columns(self) -> tuple[dict[str, tuple[int, str]], list[str]]:
+        """Return place and unit of each column that is read, and the headings of the others with the nearest field."""
+        places, unread = dict[str, tuple[int, str]](), list[str]()
+        for k, heading in enumerate(self.sheet.headings):
+            name, unit = unit_in(heading, ())
+            name, unit = (name, unit) if not unit or kind_of(unit) or unit == "%" else (heading, "")
+            key = _meaning(name, catalogue()["headings"])
+            if key is None or key in places:
+                guess = did_you_mean(plain(name), [*_words(catalogue()["headings"])]) if heading else ""
+                is_close = guess is not None and guess.endswith("?")
+                unread += [cut(one_line(heading)) + (f" ({guess})" if is_close else "")] if heading else []
+                continue
+            places[key] = k, unit
+        missing = [] if "sizes" in places else [
+            *(["height"] if "height" not in places else []),
+            *(["width, or of diameters"] if not {"width", "depth", "diameter"} & set(places) else []),
+        ]  # fmt: skip
+        if missing:
+            hint = f"such as `Height (cm)`; not read: {'; '.join(unread)}" if unread else "such as `Height (cm)`"
+            what = f"a list of objects needs a column of {' and of '.join(missing)}"
+            raise InputError(Problem(what, self.sheet.file, self.sheet.line, hint=hint))
+        for key in SIDES:
+            k, unit = places.get(key, (0, "m"))
+            if not unit and any(self.sheet.number(row.cells[k]) is not None for row in self.sheet.rows):
+                hint = f"write {self.sheet.headings[k]} ({'kg' if key == 'mass' else 'cm'})"
+                what = "gives no unit, and its numbers have none"
+                field_ = cut(one_line(self.sheet.headings[k]))
+                raise InputError(Problem(what, self.sheet.file, self.sheet.line, field=field_, hint=hint))
+        return places, unread
+
+    def _item(self, row: Row) -> Item:
+        """Return the object of a row, with what is wrong with it."""
+        cells = {key: row.cells[k] for key, (k, _) in self.places.items()}
+        item = Item(
+            inventory=self, row=row, code=cells.get("code", ""), title=one_line(cells.get("name", "")),
+            room=one_line(cells.get("room", "")), material=one_line(cells.get("material", "")),
+        )  # fmt: skip
+        try:
+            return _Reading(self, item, cells).item()
+        except InputError as error:
+            return replace(item, wrong=error)
+
+
+class _Reading:
+    """A row of a list that is being read."""
+
+    def __init__(self, inventory: Inventory, item: Item, cells: Mapping[str, str]) -> None:
+        self.inventory, self.bare, self.cells = inventory, item, cells
+        self.sizes, self.remarks, self.questions = dict[str, float](), list[str](), list[str]()
+        self.on, self.raised, self.storey = "", False, None  # type: str, bool, int | None
+
+    def item(self) -> Item:
+        """Return the object. Raises `InputError` if the row cannot be used."""
+        if self.bare.row.too_many is not None:
+            what = f"has more cells than headings; the first extra cell is {cut(one_line(self.bare.row.too_many))!r}"
+            raise InputError(self.bare._problem(what, hint="is a separator in a cell without quotes?"))
+        self._whole_sizes(self.cells.get("sizes", ""))
+        for key, unit in UNITS.items():
+            if text := self.cells.get(key, ""):
+                self.sizes[key] = self._number(key, text, self.inventory.places[key][1] or unit * (key not in SIDES))
+        kind, by_kind = self._kind()
+        if by_kind and kind in catalogue()["of_kinds"]["round"] and "diameter" not in self.sizes:
+            sides = [self.sizes.pop(key) for key in ("width", "depth") if key in self.sizes]
+            self.sizes |= {"diameter": min(sides)} if sides else {}
+        floor = self._floor(self.cells.get("storey", ""))
+        self._support(self.cells.get("support", ""))
+        self._storey_of_room()
+        self._check()
+        if not by_kind and kind == "block":
+            self.remarks.append("taken as a block of its sides")
+        if floor is None and self.storey is not None and self.inventory.floor is not None:
+            floor = self._at_storey(self.inventory.floor, self.storey)
+        plane = "width" if plain(self.cells.get("plane", "")) in ("width", "larghezza") else ""
+        return replace(
+            self.bare, kind=kind, sizes=self.sizes, on=self.on, raised=self.raised, floor=floor, storey=self.storey,
+            plane=plane, remarks=tuple(self.remarks), questions=tuple(self.questions),
+        )  # fmt: skip
+
+    def _fail(self, what: str, key: str, hint: str | None = None) -> InputError:
+        return InputError(self.bare._problem(what, key, hint))
+
+    def _number(self, key: str, text: str, unit: str) -> float:
+        """Return the number of a cell in the unit in which it is kept; `unit` is that of a plain number."""
+        number, kept = self.inventory.sheet.number(text), UNITS[key]
+        try:
+            if kept in ("", "%"):
+                plain_number = (number or text).replace("%", "").strip()
+                share = float(plain_number.replace(",", "."))
+                value = share / 100 if kept == "%" and (share > 1 or "%" in text or unit == "%") else share
+            else:
+                value = read(f"{number} {unit}" if number is not None else text.replace(",", "."), kept)
+        except UnitError as error:
+            weight = key == "mass" and self._of_weight(text, number, unit)
+            if not weight:
+                raise self._fail(error.message, key, error.hint) from None
+            value = float(weight)
+        except ValueError:
+            raise self._fail(f"must be a number, got {cut(one_line(text))!r}", key) from None
+        if not value > 0 and not (key in ("edge", "friction") and value == 0):
+            raise self._fail(f"must be above 0, got {cut(one_line(text))}", key)
+        return value
+
+    def _of_weight(self, text: str, number: str | None, unit: str) -> float | None:
+        """Return the mass of a weight [kg]; None if it is none."""
+        try:
+            return read(f"{number} {unit}" if number is not None else text, "N") / STANDARD_GRAVITY
+        except UnitError:
+            return None
+
+    def _whole_sizes(self, text: str) -> None:
+        """Read all sides in one cell: 182 x 48 x 36 cm as height, width and depth, or each after its letter."""
+        if not text:
+            return
+        unit = self.inventory.places["sizes"][1]
+        words, stated = text, re.search(r"(mm|cm|m|in)\W*$", text.strip())
+        unit = stated[1] if stated else unit
+        if not unit:
+            raise self._fail("gives no unit", "sizes", "write Dimensions (cm)")
+        if lettered := _LETTERED.findall(words):
+            pairs = [(_LETTERS[letter.lower()], number) for letter, number in lettered]
+        else:
+            numbers = re.findall(r"\d+(?:[.,]\d+)?", words)
+            pairs = [*zip(("height", "width", "depth"), numbers[:3], strict=False)]
+            self.remarks.append("sides are read as height x width x depth")
+        self.sizes |= {key: read(f"{number.replace(',', '.')} {unit}", "m") for key, number in pairs}
+
+    def _kind(self) -> tuple[str, bool]:
+        """Return the kind of the object, and whether a column of kinds gives it, or else its name."""
+        kinds = catalogue()["kinds"]
+        by_column = _word_in(self.cells.get("kind", ""), kinds)
+        if by_column is None and "diameter" in self.sizes:
+            return _word_in(self.bare.title, kinds) or "cylinder", True
+        return by_column or _word_in(self.bare.title, kinds) or "block", by_column is not None
+
+    def _floor(self, text: str) -> Floor | None:
+        """Read what a cell says of the storey: a number or a word, or a whole floor."""
+        if "=" in text:
+            try:
+                return Floor.parse(text)
+            except InputError as error:
+                raise self._fail(error.problems[0].message, "storey", error.problems[0].hint) from None
+        if text:
+            number = self.inventory.sheet.number(text)
+            self.storey = int(float(number)) if number is not None else _ordinal(text)
+            if self.storey is None:
+                self.remarks.append(f"floor {cut(one_line(text))!r} is not understood: taken as on the ground")
+        return None
+
+    def _storey_of_room(self) -> None:
+        if self.storey is None and re.search(r"(?i)\b(floor|piano|storey)\b", self.bare.room):
+            self.storey = _ordinal(self.bare.room)
+            if self.storey:
+                self.remarks.append(f"stands {self.storey} storeys above the ground, by its room")
+
+    def _at_storey(self, floor: Floor, storey: int) -> Floor:
+        storeys = round(floor.participation / (3 - 2 * floor.participation)) if floor.participation < 1.5 else 0
+        if not storeys or storey > storeys:
+            has = f"has {storeys}" if storeys else "gives no number of storeys n"
+            raise self._fail(f"stands {storey} storeys above the ground, but {named('floor')} {has}", "storey")
+        return replace(floor, height=storey / storeys)
+
+    def _support(self, text: str) -> None:
+        """Read what the object stands on, clause by clause."""
+        supports = catalogue()["supports"]
+        clauses = list[str]()
+        for clause in filter(None, map(str.strip, _CLAUSES.split(text))):
+            if clauses and _word_in(clause, supports) is None and _ordinal(clause) is None:
+                clauses[-1] += f" {clause}"
+            else:
+                clauses.append(clause)
+        for clause in clauses:
+            word = _word_in(clause, supports)
+            if word is None and _ordinal(clause) is None:
+                self.remarks.append(f"support {cut(one_line(clause))!r} is not understood, and has no effect")
+            elif word is not None:
+                self._clause(word, clause)
+            if self.storey is None and re.search(r"(?i)\b(floor|piano|storey)\b", clause):
+                self.storey = _ordinal(clause)
+
+    def _clause(self, word: str, clause: str) -> None:
+        """Read a clause of a support that a word begins."""
+        numbers = [(float(number.replace(",", ".")), unit) for number, unit in _QUANTITY.findall(clause)]
+        by_unit = {unit: f"{number} {unit}" for number, unit in numbers}
+        lengths = [read(f"{number} {unit}", "m") for number, unit in numbers if unit in ("mm", "cm", "m")]
+        if word == "object":
+            codes = [each for each in map(str.strip, re.split(r"[\s,]+", clause)) if each]
+            self.on = next((each for each in reversed(codes) if each in self.inventory_codes), codes[-1])
+        elif word == "raised":
+            self.raised = True
+            at = f", {lengths[0]:g} m above the floor" if lengths else ""
+            self.remarks.append(f"what it stands on{at} is taken as rigid and fixed to the floor")
+        elif word == "friction":
+            plain_numbers = [number for number, unit in numbers if not unit]
+            if plain_numbers:
+                self.sizes.setdefault("friction", plain_numbers[0])
+            else:
+                self.remarks.append(f"{cut(one_line(clause))!r} gives no coefficient of friction: nothing slides")
+        elif word in ("edge", "gap") and lengths:
+            self.sizes.setdefault(word, lengths[0])
+        elif word == "wax":
+            stresses = [read(f"{number} {unit}", "Pa") for number, unit in numbers if unit in ("Pa", "kPa", "MPa")]
+            areas = [read(by_unit[unit], "m2") for unit in ("mm2", "cm2", "m2") if unit in by_unit]
+            keys = zip(("wax_area", "wax_tension", "wax_shear"), (areas[:1] or [0.0]) + stresses, strict=False)
+            self.sizes = {**{key: value for key, value in keys if value > 0}, **self.sizes}
+        elif word == "wire":
+            forces = [read(by_unit[unit], "N") for unit in ("N", "kN") if unit in by_unit]
+            keys = zip(("wire", "wire_height"), (forces[:1] or [0.0]) + lengths, strict=False)
+            self.sizes = {**{key: value for key, value in keys if value > 0}, **self.sizes}
+        elif word == "isolator":
+            given = {"period": by_unit.get("s"), "damping": by_unit.get("%")}
+            read_ = {key: self._number(key, text, "") for key, text in given.items() if text}
+            self.sizes = {**read_, **({"stroke": lengths[0]} if lengths else {}), **self.sizes}
+
+    @cached_property
+    def inventory_codes(self) -> Collection[str]:
+        """The codes of all rows."""
+        if "code" not in self.inventory.places:
+            return ()
+        k, _ = self.inventory.places["code"]
+        return {row.cells[k] for row in self.inventory.sheet.rows}
+
+    def _check(self) -> None:
+        """Raise `InputError` for what is missing or impossible, and question what looks like a mistake."""
+        sizes = self.sizes
+        if "height" not in sizes:
+            raise self._fail("is missing", "height")
+        if not {"width", "depth", "diameter"} & set(sizes):
+            raise self._fail("is missing: give width and depth, or a diameter", "width")
+        if "period" in sizes and "stroke" not in sizes:
+            hint = "give how far it can move; without it, no outcome is known"
+            raise self._fail("the isolator has no stroke", "stroke", hint)
+        if {"wax_area", "wire"} & set(sizes) and "mass" not in sizes:
+            raise self._fail("is missing, and decides how far wax and wires hold", "mass")
+        if "wax_area" in sizes and not {"wax_tension", "wax_shear"} <= set(sizes):
+            hint = "such as `wax 20 cm2 40 kPa 30 kPa`: area, tension and shear that the adhesive holds"
+            raise self._fail("the wax has no strength in tension and in shear", "support", hint)
+        if sizes.get("centre", 0.0) >= sizes["height"]:
+            raise self._fail(f"is not below the height, {sizes['height']:g} m", "centre")
+        self.questions += self._doubts()
+
+    def _doubts(self) -> Iterator[str]:
+        sizes = self.sizes
+        across = [sizes[key] for key in ("width", "depth", "diameter") if key in sizes]
+        for key in ("foot", "foot_depth"):
+            body = sizes.get("diameter", sizes.get("width" if key == "foot" else "depth", inf))
+            if sizes.get(key, 0.0) > body * (1 + SAME_SIDE):
+                yield f"the foot, {sizes[key]:g} m, is larger than the body, {body:g} m: are the two columns exchanged?"
+        if self._is_flat(across):
+            yield f"it is {sizes['height']:g} m high and {max(across):g} m wide: are height and width exchanged?"
+        if "edge" in sizes and sizes["edge"] == 0:
+            yield "the edge is at the foot: it falls when it begins to slide"
+        elif "edge" in sizes and sizes["edge"] < min(across) / 2:
+            yield (
+                f"the edge, {sizes['edge']:g} m away, is closer than half of the foot: is it the distance from the "
+                "foot, and not from the middle?"
+            )
+        if "mass" in sizes:
+            yield from self._of_mass(across)
+
+    def _is_flat(self, across: Sequence[float]) -> bool:
+        upright = _word_in(self.bare.title, {key: catalogue()["kinds"][key] for key in ("vase", "statue", "bookcase")})
+        return upright is not None and sizes_flat(self.sizes["height"], across)
+
+    def _of_mass(self, across: Sequence[float]) -> Iterator[str]:
+        """Yield a question if a body is heavier than a solid of its material, or much lighter."""
+        sizes = self.sizes
+        base = pi / 4 * sizes["diameter"] ** 2 if "diameter" in sizes else max(across) * min(across)
+        materials = _materials_in(self.bare.material)
+        most = max((density for density, _, _ in materials), default=23_000.0)
+        density = sizes["mass"] / (base * sizes["height"])
+        if density > most and len(across) + ("diameter" in sizes) > 1:
+            of = f"solid {self.bare.material}" if materials else "the heaviest metal"
+            heaviest = most * base * sizes["height"]
+            yield f"it weighs {sizes['mass']:g} kg, but {of} of its sides {heaviest:.3g} kg at most: are units right?"
+        elif materials and all(brittle for _, brittle, _ in materials) and density < LIGHTEST * most:
+            yield f"it weighs {sizes['mass']:g} kg, {density / most:.1%} of a solid of {self.bare.material}: check it"
+
+
+def sizes_flat(height: float, across: Sequence[float]) -> bool:
+    """Return whether what should stand upright is wider than high."""
+    return height < min(across)
+
+
+def is_inventory(sheet: Spreadsheet) -> bool:
+    """Return whether a table is a list of objects: it has columns of heights and of codes, names or sides by words."""
+    keys = {_meaning(unit_in(each, ())[0], catalogue()["headings"]) for each in sheet.headings}
+    return "sizes" in keys or ("height" in keys and bool(keys & {"width", "depth", "diameter"}))
+
+
+def _words(words: Mapping[str, Sequence[str]]) -> Iterator[str]:
+    return (each for some in words.values() for each in some)
+
+
+def _meaning(heading: str, words: Mapping[str, Sequence[str]]) -> str | None:
+    """Return the field that a heading means; one with a unit after its words too, such as `Height in cm`."""
+    bare = plain(heading)
+    return next((key for key, some in words.items() if bare in some), None)
+
+
+def _word_in(text: str, words: Mapping[str, Sequence[str]]) -> str | None:
+    """Return what the first word of a text that is known means, of several the longest; None if there is none."""
+    bare = f" {plain(text)} "
+    places = [(bare.find(f" {each} "), -len(each), key) for key, some in words.items() for each in some]
+    return min((each for each in places if each[0] >= 0), default=(0, 0, None))[2]
+
+
+def _materials_in(text: str) -> list[tuple[float, bool, str]]:
+    """Return density, whether it cracks, and word of each material in a text."""
+    bare = f" {plain(text)} "
+    every = [(density, brittle, word) for density, brittle, *words in catalogue()["materials"].values()
+             for word in words]  # fmt: skip
+    return [each for each in every if f" {each[2]} " in bare]
+
+
+def _ordinal(text: str) -> int | None:
+    """Return the number of storeys below a floor by its words, such as 2 of `L1 (2nd floor)`; None if it has none."""
+    key = _word_in(text, catalogue()["ordinals"])
+    if key is not None:
+        return int(key)
+    match = re.search(r"(?i)\b(?:floor|piano|storey|level|livello)\s*(\d+)\b", text)
+    return int(match[1]) if match else None
+
+
+@cache
+def _registry() -> Registry:
+    return Registry()

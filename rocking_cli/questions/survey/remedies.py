@@ -1,0 +1,210 @@
+"""What to do about an object that may fall, as numbers: each remedy is tried under the same motions and neighbours."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from math import exp, hypot, inf
+from statistics import NormalDist
+
+import numpy as np
+
+from rocking_cli.errors import RockingError
+from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
+from rocking_cli.processing.oscillator import peak_displacement
+from rocking_cli.questions.margin.study import margin
+from rocking_cli.questions.survey.inventory import Item
+from rocking_cli.structure import Structure
+from rocking_cli.studies.neighbours import Conditions, Neighbourhood, simulate_neighbours
+
+SAFE_SHARE = 0.05  # of the neighbours, which may overturn all the same
+QUANTILE = NormalDist().inv_cdf(1 - SAFE_SHARE)
+WIDENINGS = np.geomspace(0.02, 1.0, 18)  # of the base, over its smaller side
+BALLASTS = np.geomspace(0.1, 3.0, 14)  # over the mass of the object
+WIRE_HEIGHT = 2 / 3  # over the height of the object, if no height is given
+OF_SLENDER = 0.8  # friction at which it slides, over b/h, below which it does not rock
+LEAST_FRICTION = 0.05  # of what can be put below an object: PTFE on polished steel
+PERIODS, ISOLATOR_DAMPING = (2.0, 2.5, 3.0, 4.0), 0.15  # s, of isolators that are tried
+BENDS_FROM = 4.0  # height over foot from which a body that cracks is not held at its top
+
+
+@dataclass(frozen=True)
+class Remedy:
+    """Something that may keep an object from falling.
+
+    Parameters
+    ----------
+    kind : str
+        "base", "ballast", "wires", "wax", "slide", "isolate", or "none" if nothing that was tried suffices.
+    suffices : bool or None
+        Whether at most 5 % of the neighbours of every motion overturn it; None if that depends on what is not given.
+    numbers : mapping of str to float
+        Its numbers: lengths in m, masses in kg, forces in N, areas in m2, periods in s.
+    against : bool
+        Whether it does harm: a slender body of stone that is held at its top bends, and may crack.
+    """
+
+    kind: str
+    suffices: bool | None
+    numbers: Mapping[str, float] = field(default_factory=dict)
+    against: bool = False
+
+
+@dataclass(frozen=True)
+class _Trial:
+    """An object under the motions of the ground, as remedies are tried on it."""
+
+    item: Item
+    motions: Sequence[GroundMotion]
+    polarities: Sequence[int]
+    around: Neighbourhood
+
+    def conditions(self, item: Item) -> Conditions:
+        made = item.make()
+        return Conditions(
+            Structure(made.weaker_side() or made), ["nonlinear"], self.polarities, around=self.around
+        )  # fmt: skip
+
+    def share(self, item: Item) -> float:
+        """Return the largest share of neighbours that may overturn an object, of all motions; 1 if none is known."""
+        try:
+            conditions, worst = self.conditions(item), 0.0
+            for motion in item.under(self.motions):
+                limits = item.limits(motion)
+                found = margin(conditions, motion, factors=np.ones(1), limits=limits, threads=1)
+                worst = max(worst, found.share.highest)
+                if worst > SAFE_SHARE:
+                    break
+        except RockingError:
+            return 1.0
+        return worst
+
+    def least(self, changed: Callable[[float], Item], values: Sequence[float]) -> float | None:
+        """Return the least of some values with which it stands, as it does with the next one; None without one."""
+        stands = False
+        for k, value in enumerate(values):
+            before, stands = stands, self.share(changed(value)) <= SAFE_SHARE
+            if before and stands:
+                return values[k - 1]
+        return None
+
+    @property
+    def strong(self) -> float:
+        """The peak acceleration of what it stands on that 5 % of its neighbours exceed [standard gravity]."""
+        slenderness = 0.10 if self.around.slenderness is None else self.around.slenderness
+        spread = hypot(self.around.amplitude, slenderness)
+        return exp(QUANTILE * spread) * max(each.pga_g for each in self.item.under(self.motions))
+
+
+def remedies(
+    item: Item, motions: Sequence[GroundMotion], polarities: Sequence[int], around: Neighbourhood
+) -> Iterator[Remedy]:
+    """Yield remedies of an object in the order in which they are tried; the last is "none" if none of them suffices.
+
+    Parameters
+    ----------
+    item : Item
+        The object, which is tried alone on what it stands on, if that is another object.
+    motions : sequence of GroundMotion
+        The ground motions.
+    polarities : sequence of int
+        Their polarities.
+    around : Neighbourhood
+        The neighbours.
+    """
+    trial = _Trial(replace(item, on=""), motions, polarities, around)
+    any_suffices = False
+    for attempt in (_base, _ballast, _wires, _wax, _slide, _isolate):
+        found = attempt(trial)
+        if found is not None:
+            any_suffices |= bool(found.suffices) and not found.against
+            yield found
+    if not any_suffices:
+        yield Remedy("none", suffices=False)
+
+
+def _with(item: Item, **sizes: float) -> Item:
+    return replace(item, sizes={**item.sizes, **sizes})
+
+
+def _widened(item: Item, by: float) -> Item:
+    (_, foot), (_, deep) = (item.widths(turned=turned) for turned in (False, True))
+    return _with(item, foot=foot + by) if item.is_round else _with(item, foot=foot + by, foot_depth=deep + by)
+
+
+def _base(trial: _Trial) -> Remedy | None:
+    """Return by how much a wider base makes it stand, the same to all sides."""
+    item = trial.item
+    by = trial.least(partial(_widened, item), (WIDENINGS * item.least_foot).tolist())
+    return None if by is None else Remedy("base", suffices=True, numbers={"wider": by})
+
+
+def _ballast(trial: _Trial) -> Remedy | None:
+    """Return how much sand or weight in its foot makes it stand; None if it is not hollow."""
+    item = trial.item
+    if not item.is_hollow or item.mass is None:
+        return None
+    ballast = trial.least(lambda mass: replace(item, ballast=mass), (BALLASTS * item.mass).tolist())
+    return None if ballast is None else Remedy("ballast", suffices=True, numbers={"mass": ballast})
+
+
+def _bends(item: Item) -> bool:
+    return item.cracks and item.height / item.least_foot >= BENDS_FROM
+
+
+def _wires(trial: _Trial) -> Remedy | None:
+    """Return the horizontal force of wires that keep it from lifting: m a h_c = m g b/2 + F z."""
+    item = trial.item
+    if item.mass is None:
+        return None
+    height = item.sizes.get("wire_height", WIRE_HEIGHT * item.height)
+    turning = trial.strong * item.centre - item.least_foot / 2
+    force = max(item.mass * STANDARD_GRAVITY * turning / height, 0.0)
+    return Remedy("wires", suffices=True, numbers={"force": force, "height": height}, against=_bends(item))
+
+
+def _wax(trial: _Trial) -> Remedy | None:
+    """Return pull and shear of wax below the middle of its foot that keep it from moving, and the area if known."""
+    item, sizes = trial.item, trial.item.sizes
+    if item.mass is None:
+        return None
+    weight = item.mass * STANDARD_GRAVITY
+    pull = max(weight * (2 * trial.strong * item.centre / item.least_foot - 1), 0.0)
+    numbers = {"pull": pull, "shear": weight * trial.strong}
+    strength = [sizes.get("wax_tension"), sizes.get("wax_shear")]
+    if strength[0] is None or strength[1] is None:
+        return Remedy("wax", suffices=None, numbers=numbers, against=_bends(item))
+    area = max(pull / strength[0], numbers["shear"] / strength[1])
+    (_, foot), (_, deep) = (item.widths(turned=turned) for turned in (False, True))
+    return Remedy("wax", suffices=area <= foot * deep, numbers={**numbers, "area": area}, against=_bends(item))
+
+
+def _slide(trial: _Trial) -> Remedy | None:
+    """Return a friction below which it slides instead, and how far, which 5 % of its neighbours exceed."""
+    item = trial.item
+    friction = min(item.sizes.get("friction", inf), OF_SLENDER * item.least_foot / (2 * item.centre))
+    if friction < LEAST_FRICTION:
+        return None
+    sliding, slip = _with(item, friction=friction), 0.0
+    if trial.share(sliding) > SAFE_SHARE:
+        return None
+    conditions = trial.conditions(sliding)
+    draws = conditions.around.drawn(conditions.model)
+    for motion in sliding.under(trial.motions):
+        outcomes = simulate_neighbours(conditions.model, motion, draws, threads=1)
+        slip = max(slip, float(np.quantile(outcomes.slip, 1 - SAFE_SHARE)))
+    fits = slip < item.sizes.get("edge", inf) and slip < item.sizes.get("gap", inf)
+    return Remedy("slide", suffices=fits, numbers={"friction": friction, "clearance": slip})
+
+
+def _isolate(trial: _Trial) -> Remedy | None:
+    """Return the period of an isolator on which it stands, and the stroke that 5 % of its neighbours exceed."""
+    for period in PERIODS:
+        isolated = _with(trial.item, period=period, damping=ISOLATOR_DAMPING, stroke=inf)
+        if trial.share(isolated) <= SAFE_SHARE:
+            below = trial.item.under(trial.motions)
+            stroke = max(peak_displacement(each, period, ISOLATOR_DAMPING) for each in below)
+            stroke *= exp(QUANTILE * trial.around.amplitude)
+            return Remedy("isolate", suffices=True, numbers={"period": period, "stroke": stroke})
+    return None
