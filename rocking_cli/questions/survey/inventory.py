@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from difflib import get_close_matches
 from functools import cache, cached_property
 from importlib.resources import files
 from math import inf, pi
@@ -18,6 +19,7 @@ from unicodedata import combining, normalize
 from pydantic import ValidationError
 
 from rocking_cli.core import Direction, Mechanism
+from rocking_cli.core.contacts import MASONRY_FRICTION
 from rocking_cli.core.registry import Registry
 from rocking_cli.errors import InputError, Problem, named
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
@@ -25,7 +27,7 @@ from rocking_cli.io.field_problems import of_arguments
 from rocking_cli.io.spreadsheet import Row, Spreadsheet, unit_in
 from rocking_cli.processing.oscillator import Floor, peak_displacement
 from rocking_cli.questions.margin.study import Limits
-from rocking_cli.text import cut, did_you_mean, one_line
+from rocking_cli.text import cut, one_line
 from rocking_cli.units import UnitError, kind_of, read
 from rocking_cli.verification.code import SiteFile
 
@@ -37,14 +39,17 @@ UNITS = {
 """Fields that are numbers, with the unit in which they are kept; a damping in % is kept as a ratio."""
 SIDES = ("height", "width", "depth", "diameter", "foot", "foot_depth", "centre", "mass")
 SAME_SIDE = 0.01  # relative difference of sides that count as equal
+NEAREST_HEADING = 0.8  # similarity of a heading to a word, from which that is named
 LIGHTEST = 0.02  # of the mass of a solid: a lighter body is questioned
 FAR_GROUND = 40.0  # m: half of the width of the ground below objects on objects, which none of them leaves
 DEFAULT_DAMPING = 0.05
+NEVER_ROCKS = 1.0  # half of the foot over the height of the centroid, from which no usual friction lets it rock
 BALLAST_HEIGHT = 0.05  # of the middle of what is put in its foot, over the height of an object
 _LETTERED = re.compile(r"(?i)\b(h|w|d|l|p|ø|diam|dia|alt|larg|prof)\b\.?\s*:?\s*(\d+(?:[.,]\d+)?)")
 _LETTERS = {"h": "height", "alt": "height", "w": "width", "l": "width", "larg": "width", "d": "depth", "p": "depth",
             "prof": "depth", "ø": "diameter", "diam": "diameter", "dia": "diameter"}  # fmt: skip
 _QUANTITY = re.compile(r"(?<![\w.,])(\d+(?:[.,]\d+)?)\s*(kPa|MPa|Pa|kN|N|mm2|cm2|m2|mm|cm|m|s|%)?(?![\w])")
+_TRAILING = re.compile(r"(?i)(.*?)[\s,_/]+(?:in\s+)?(mm|cm|m|kg|g|lb|ft)\.?")
 _CLAUSES = re.compile(r"\s*[;+]\s*|,\s+|,(?=\D)")
 
 
@@ -55,7 +60,7 @@ def catalogue() -> Mapping[str, Any]:
 
 
 def plain(text: str) -> str:
-    """Return a text in small letters, without accents and signs but those between words and numbers.
+    """Return a text in small letters, without accents and signs.
 
     Examples
     --------
@@ -457,12 +462,14 @@ class Inventory(Sequence[Item]):
         places, unread = dict[str, tuple[int, str]](), list[str]()
         for k, heading in enumerate(self.sheet.headings):
             name, unit = unit_in(heading, ())
+            if not unit and (stated := _TRAILING.fullmatch(heading)):
+                name, unit = stated.groups()
             name, unit = (name, unit) if not unit or kind_of(unit) or unit == "%" else (heading, "")
             key = _meaning(name, catalogue()["headings"])
             if key is None or key in places:
-                guess = did_you_mean(plain(name), [*_words(catalogue()["headings"])]) if heading else ""
-                is_close = guess is not None and guess.endswith("?")
-                unread += [cut(one_line(heading)) + (f" ({guess})" if is_close else "")] if heading else []
+                close = get_close_matches(_bare(name), _words(catalogue()["headings"]), 1, NEAREST_HEADING)
+                nearest = f" (did you mean {close[0]}?)" if close and key is None else ""
+                unread += [cut(one_line(heading)) + nearest] if heading else []
                 continue
             places[key] = k, unit
         missing = [] if "sizes" in places else [
@@ -624,6 +631,9 @@ class _Reading:
                 clauses.append(clause)
         for clause in clauses:
             word = _word_in(clause, supports)
+            if word == "object" and not self.inventory_codes & {*re.split(r"[\s,]+", clause)}:
+                others = {key: words for key, words in supports.items() if key != "object"}
+                word = _word_in(clause, others) or word
             if word is None and _ordinal(clause) is None:
                 self.remarks.append(f"support {cut(one_line(clause))!r} is not understood, and has no effect")
             elif word is not None:
@@ -666,10 +676,10 @@ class _Reading:
             self.sizes = {**read_, **({"stroke": lengths[0]} if lengths else {}), **self.sizes}
 
     @cached_property
-    def inventory_codes(self) -> Collection[str]:
+    def inventory_codes(self) -> set[str]:
         """The codes of all rows."""
         if "code" not in self.inventory.places:
-            return ()
+            return set()
         k, _ = self.inventory.places["code"]
         return {row.cells[k] for row in self.inventory.sheet.rows}
 
@@ -690,9 +700,18 @@ class _Reading:
             raise self._fail("the wax has no strength in tension and in shear", "support", hint)
         if sizes.get("centre", 0.0) >= sizes["height"]:
             raise self._fail(f"is not below the height, {sizes['height']:g} m", "centre")
-        self.questions += self._doubts()
+        feet = [sizes[key] for key in ("foot", "foot_depth") if key in sizes] or [
+            sizes[key] for key in ("width", "depth", "diameter") if key in sizes
+        ]
+        if "friction" not in sizes and min(feet) >= NEVER_ROCKS * 2 * sizes.get("centre", sizes["height"] / 2):
+            sizes["friction"] = MASONRY_FRICTION
+            self.remarks.append(
+                f"wider than high: no floor holds it so that it rocks. It slides, with a friction of "
+                f"{MASONRY_FRICTION:g} unless another is given"
+            )
+        self.questions += self._doubts(min(feet))
 
-    def _doubts(self) -> Iterator[str]:
+    def _doubts(self, foot: float) -> Iterator[str]:
         sizes = self.sizes
         across = [sizes[key] for key in ("width", "depth", "diameter") if key in sizes]
         for key in ("foot", "foot_depth"):
@@ -703,7 +722,7 @@ class _Reading:
             yield f"it is {sizes['height']:g} m high and {max(across):g} m wide: are height and width exchanged?"
         if "edge" in sizes and sizes["edge"] == 0:
             yield "the edge is at the foot: it falls when it begins to slide"
-        elif "edge" in sizes and sizes["edge"] < min(across) / 2:
+        elif "edge" in sizes and sizes["edge"] < foot / 2:
             yield (
                 f"the edge, {sizes['edge']:g} m away, is closer than half of the foot: is it the distance from the "
                 "foot, and not from the middle?"
@@ -736,19 +755,27 @@ def sizes_flat(height: float, across: Sequence[float]) -> bool:
 
 
 def is_inventory(sheet: Spreadsheet) -> bool:
-    """Return whether a table is a list of objects: it has columns of heights and of codes, names or sides by words."""
-    keys = {_meaning(unit_in(each, ())[0], catalogue()["headings"]) for each in sheet.headings}
-    return "sizes" in keys or ("height" in keys and bool(keys & {"width", "depth", "diameter"}))
+    """Return whether a table without mechanisms is a list of objects: it has sides, and more that is known."""
+    keys = {_meaning(unit_in(each, ())[0], catalogue()["headings"]) for each in sheet.headings} - {None}
+    misspelt = get_close_matches("mechanism", [each.lower() for each in sheet.headings], 1)
+    return bool(keys & {"sizes", "height", "width", "depth", "diameter"}) and len(keys) > 1 and not misspelt
 
 
-def _words(words: Mapping[str, Sequence[str]]) -> Iterator[str]:
-    return (each for some in words.values() for each in some)
+def _words(words: Mapping[str, Sequence[str]]) -> list[str]:
+    return [each for some in words.values() for each in some]
 
 
 def _meaning(heading: str, words: Mapping[str, Sequence[str]]) -> str | None:
-    """Return the field that a heading means; one with a unit after its words too, such as `Height in cm`."""
-    bare = plain(heading)
+    """Return the field that a heading means; None if it is not known."""
+    bare = _bare(heading)
     return next((key for key, some in words.items() if bare in some), None)
+
+
+def _bare(heading: str) -> str:
+    """Return a heading without words that change nothing, such as `overall` and `of the object`."""
+    return " ".join(each for each in plain(heading).split() if each not in catalogue()["idle"]["words"]) or plain(
+        heading
+    )
 
 
 def _word_in(text: str, words: Mapping[str, Sequence[str]]) -> str | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -81,13 +82,19 @@ class _Trial:
         return worst
 
     def least(self, changed: Callable[[float], Item], values: Sequence[float]) -> float | None:
-        """Return the least of some values with which it stands, as it does with the next one; None without one."""
-        stands = False
-        for k, value in enumerate(values):
-            before, stands = stands, self.share(changed(value)) <= SAFE_SHARE
-            if before and stands:
-                return values[k - 1]
-        return None
+        """Return the least of some values with which it stands, as it does with the next one; None without one.
+
+        Values are halved as if each that is larger than one that suffices did so too.
+        """
+        stands: list[bool | None] = [None] * len(values)
+
+        def suffices(k: int) -> bool:
+            if stands[k] is None:
+                stands[k] = self.share(changed(values[k])) <= SAFE_SHARE
+            return bool(stands[k])
+
+        k = bisect_left(range(len(values) - 1), True, key=suffices)
+        return values[k] if k < len(values) - 1 and suffices(k + 1) else None
 
     @property
     def strong(self) -> float:

@@ -25,7 +25,7 @@ from rocking_cli.core.structure_file import TEMPLATE_HINT, of_document
 from rocking_cli.errors import InputError, MechanismError, Problem, named
 from rocking_cli.io.field_problems import MEANINGS, by_meaning, fields_at, is_plural, lists_models, types_at
 from rocking_cli.io.spreadsheet import DECIMAL_COMMA, NUMBER, THOUSANDS, Row, Spreadsheet, unit_in
-from rocking_cli.io.starters import italian
+from rocking_cli.io.starters import STARTERS, italian, starter, template_of
 from rocking_cli.io.yaml_file import Document, Place, closed, parse, put, read_text, replace_at, spell, words
 from rocking_cli.questions.survey.inventory import Inventory, is_inventory
 from rocking_cli.text import cut, did_you_mean, one_line
@@ -173,6 +173,11 @@ class StructureTable(Sequence["TableRow"]):
         file = self.text(row, FILE_COLUMN)
         return file if file.lower().endswith(YAML_SUFFIXES) else ""
 
+    def starter_of(self, row: Row) -> str:
+        """Return the starter that a row names as its mechanism, whose fields the other cells change; empty for none."""
+        name = template_of(self.text(row, MECHANISM_COLUMN))
+        return name if name in STARTERS and name not in self.registry else ""
+
     def first_site(self) -> SiteFile | None:
         """Return the first site that a row names and that can be used; None if there is none."""
         for file in self.sites:
@@ -250,7 +255,9 @@ class StructureTable(Sequence["TableRow"]):
 
     def _mechanisms(self) -> set[str]:
         """Return the names of the mechanisms in the rows, known or not."""
-        mechanisms = {self.text(row, MECHANISM_COLUMN) for row in self.sheet.rows}
+        starts = {starter_name for row in self.sheet.rows if (starter_name := self.starter_of(row))}
+        mechanisms = {self.text(row, MECHANISM_COLUMN) for row in self.sheet.rows if not self.starter_of(row)}
+        mechanisms |= {str(self.kept(each, _starter)[MECHANISM_COLUMN]) for each in starts}
         for file in {self.base_of(row) for row in self.sheet.rows if not self.text(row, MECHANISM_COLUMN)} - {""}:
             try:
                 mechanisms.add(str(self.kept(file, _data_in).get(MECHANISM_COLUMN)))
@@ -312,6 +319,8 @@ class TableRow:
             document.data = deepcopy(self._read(based, _data_in, document, FILE_COLUMN))
             folder = (table.folder / based).parent
             default = one_line(Path(based).stem) or default
+        elif starts := table.starter_of(row):
+            document.data, document.base = deepcopy(table.kept(starts, _starter)), starts
         cls = self._class_in(document)
         self._fill(document, [each for each in table.fields if not based or each.english != (FILE_COLUMN,)], cls)
         if MECHANISM_COLUMN not in document.data and not based and (file := table.text(row, FILE_COLUMN)):
@@ -376,7 +385,8 @@ class TableRow:
 
     def _class_in(self, document: _RowDocument) -> type[Mechanism] | None:
         """Return the mechanism of the row, also to its document; None if it is unknown, which is reported later."""
-        if mechanism := self.table.text(self.row, MECHANISM_COLUMN):
+        mechanism = self.table.text(self.row, MECHANISM_COLUMN)
+        if mechanism and not self.table.starter_of(self.row):
             document.data[MECHANISM_COLUMN] = mechanism
         return self.table.registry.get(str(document.data.get(MECHANISM_COLUMN)))
 
@@ -397,6 +407,11 @@ class TableRow:
             except InputError as error:
                 problems = error.problems
                 document.problems += [document.problem(one.message, None, column.heading, one.hint) for one in problems]
+
+
+def _starter(path: Path) -> dict[str, Any]:
+    """Return the data of a starter, by its name."""
+    return parse(starter(path.name), path.name, "structure", TEMPLATE_HINT).data
 
 
 def _data_in(path: Path) -> dict[str, Any]:

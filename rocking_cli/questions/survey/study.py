@@ -125,6 +125,8 @@ class Topples(NamedTuple):
         The least and the largest factor tried.
     share : NeighbourShare
         The share at a factor of 1.
+    base_pga : float
+        Peak acceleration of what it stands on [standard gravity]: of the ground, a floor, or an isolator.
     """
 
     motion: str
@@ -133,6 +135,7 @@ class Topples(NamedTuple):
     factors: Mapping[float, float | None]
     tried: tuple[float, float]
     share: NeighbourShare
+    base_pga: float
 
 
 @short_repr
@@ -413,11 +416,13 @@ def survey(
         around = replace(around, count=MAX_SAMPLES // samples)
     part = partial(_part, entries, Setting(motions, polarities, around, by_code, site, opening, cautions, every_remedy))
 
+    per_chunk = 1 if isinstance(entries, Inventory) else STRUCTURES_PER_CHUNK  # an object takes seconds
+
     def work(first: int, stop: int) -> None:
         results[first:stop] = part(first, stop)
 
     if processes is None:
-        in_parts(work, len(entries), STRUCTURES_PER_CHUNK, threads, progress)
+        in_parts(work, len(entries), per_chunk, threads, progress)
     else:
         for first, done in in_processes(part, len(entries), STRUCTURES_PER_CHUNK, processes):
             results[first : first + len(done)] = done
@@ -528,8 +533,9 @@ def _of_object(item: Item, structure: Structure, setting: Setting) -> _OfObject:
         answer = replace(answer, share=NeighbourShare(low, high, around.count))
         if max(each.share.highest for each in topples) <= SAFE_SHARE:
             return _OfObject(answer, topples)
-        advice = list[Remedy]()
-        for each in remedies(item, setting.motions, setting.polarities, around):
+        advice, places = list[Remedy](), range(len(topples))
+        worst_first = sorted(places, key=lambda k: -topples[k].share.highest)
+        for each in remedies(item, [setting.motions[k] for k in worst_first], setting.polarities, around):
             advice.append(each)
             if each.suffices and not each.against and not setting.every_remedy:
                 break
@@ -541,18 +547,23 @@ def _of_object(item: Item, structure: Structure, setting: Setting) -> _OfObject:
 def _topples(conditions: Conditions, motion: GroundMotion, limits: Limits) -> Topples:
     """Return how strong a motion must be; a body that only slides, and may slide as far as it will, never falls."""
     ground, model = motion.of_ground, conditions.model
-    pgv = float(np.abs(ground.velocity).max())
+    pgv, tried = float(np.abs(ground.velocity).max()), (float(FACTORS[0]), float(FACTORS[-1]))
     if limits == Limits() and motion.vertical is None and (foot := model.sliding) is not None:
         slender = conditions.around.drawn(model).slender
         free = all(each.distance == inf for each in foot.clear)
         if free and foot.holds(slender, *np.zeros((2, 1))).all():
-            tried = float(FACTORS[0]), float(FACTORS[-1])
-            share = NeighbourShare(0.0, 0.0, conditions.around.count)
-            return Topples(motion.name, ground.pga_g, pgv, dict.fromkeys(LEVELS), tried, share)
-    found = margin(conditions, motion, limits=limits, threads=1)
-    factors = {level: found.first(level, unknown=True) for level in LEVELS}
-    tried = float(found.factors[0]), float(found.factors[-1])
-    return Topples(motion.name, ground.pga_g, pgv, factors, tried, found.share)
+            never = NeighbourShare(0.0, 0.0, conditions.around.count)
+            return Topples(motion.name, ground.pga_g, pgv, dict.fromkeys(LEVELS), tried, never, motion.pga_g)
+    first: dict[float, float | None] = dict.fromkeys(LEVELS)
+    share: NeighbourShare | None = None
+    for part in (FACTORS[FACTORS <= 1], *np.array_split(FACTORS[FACTORS > 1], 3)):
+        found = margin(conditions, motion, factors=part, limits=limits, threads=1)
+        share = share or found.share
+        first |= {level: found.first(level, unknown=True) for level in LEVELS if first[level] is None}
+        if first[LEVELS[-1]] is not None:
+            break  # larger factors decide nothing
+    assert share is not None
+    return Topples(motion.name, ground.pga_g, pgv, first, tried, share, motion.pga_g)
 
 
 def _alone(

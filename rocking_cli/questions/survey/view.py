@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import asdict, replace
 from functools import partial
 from math import isnan
@@ -15,7 +15,7 @@ from rocking_cli.errors import named
 from rocking_cli.io.spreadsheet import Spreadsheet
 from rocking_cli.io.tables import Columns
 from rocking_cli.names import digits_apart, percent
-from rocking_cli.questions.survey.study import FailedEntry, Survey, Surveyed
+from rocking_cli.questions.survey.study import LEVELS, FailedEntry, Survey, Surveyed
 from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.text import cut, one_line
 from rocking_cli.views.cautions import in_language
@@ -87,6 +87,24 @@ def _share(row: RankedStructure) -> str | None:
     return low if low == high else f"{low.removesuffix(' %')} to {high}"
 
 
+def _from(level: float, k: int) -> Callable[[RankedStructure], float | None]:
+    """Return the function of a row that gives the least peak of motions, PGA or PGV, at which a share topples it."""
+    return lambda row: row.found.toppled_from(level)[k]
+
+
+def _topples(row: RankedStructure) -> list[dict[str, Any]] | None:
+    """Return how strong each motion must be, as plain data."""
+    return [
+        {
+            "motion": each.motion, "pga": each.pga, "base_pga": each.base_pga, "pgv": each.pgv,
+            "share_lowest": each.share.lowest, "share_highest": each.share.highest,
+            "factor_5": each.factors[LEVELS[0]], "factor_50": each.factors[LEVELS[1]],
+            "tried_from": each.tried[0], "tried_to": each.tried[1],
+        }
+        for each in row.found.topples
+    ] or None  # fmt: skip
+
+
 def _peak(peak: float) -> str:
     return "no uplift" if peak == 0 else number(peak, 3)
 
@@ -122,6 +140,22 @@ UNDER_MOTIONS: tuple[Column[RankedStructure], ...] = (
     Column("peak_over", of("found.under.over"), text=True),
     Column("outcome", of("found.under.concluded.value"), text=True),
     Column("worst", of("found.under.worst"), text=True),
+)
+OF_LIST: tuple[Column[RankedStructure], ...] = (
+    Column("danger", of("found.danger"), head="it", text=True),
+    *(
+        Column(
+            f"{key}_{100 * level:.0f}",
+            _from(level, k),
+            unit,
+            f"{percent(level)} from\n{key.upper()} [{unit}]",
+            rounded(2),
+            rank=rank,
+        )
+        for k, (key, unit, rank) in enumerate((("pga", "g", 0), ("pgv", "m/s", 3)))
+        for level in LEVELS
+    ),
+    Column("topples", _topples),
 )
 PARAMETERS: tuple[Column[RankedStructure], ...] = (
     Column("lambda", of("found.lambda_"), head="lambda", rank=3),
@@ -186,6 +220,7 @@ def _columns(found: Survey) -> list[Column[RankedStructure]]:
         *(_number(name, unit) for name, unit in found.units.items()),
         *(OF_NEIGHBOURS if found.around.count else ()),
         *(UNDER_MOTIONS if found.motions else ()),
+        *(OF_LIST if found.items else ()),
         *PARAMETERS,
     ]
 

@@ -182,10 +182,10 @@ class TestSites:
     def test_processes_know_the_sites_of_rows(self):
         file = table(["site", "z"], *(f"block,b{k},0.3,2,floor.yaml,{k}" for k in range(12)))
         one = rk.survey(file, jobs=1).rows
-        from rocking_cli.questions.survey.structure_table import StructureTable
+        from rocking_cli.questions.survey.structure_table import table_of
         from rocking_cli.questions.survey.study import survey
 
-        other = survey(StructureTable.read(Path(file)), processes=2).rows
+        other = survey(table_of(file, None), processes=2).rows
         assert [(row.name, row.ratio, row.z) for row in other] == [(row.name, row.ratio, row.z) for row in one]
 
 

@@ -22,7 +22,7 @@ from rocking_cli.io.spreadsheet import parse_sheet
 from rocking_cli.io.yaml_file import HOLE, closed, put, words
 from rocking_cli.names import percent
 from rocking_cli.questions.survey import verb
-from rocking_cli.questions.survey.structure_table import StructureTable
+from rocking_cli.questions.survey.structure_table import table_of
 from rocking_cli.questions.survey.study import MadeStructure, SurveyResponse, survey
 from rocking_cli.questions.survey.view import RankedStructure, _share, sentences
 from rocking_cli.structure import Structure
@@ -44,7 +44,7 @@ def table(text, name="t.csv", encoding="utf-8"):
 
 
 def rows(name="t.csv"):
-    return {row.name: row.make() for row in StructureTable.read(Path(name))}
+    return {row.name: row.make() for row in table_of(name, None)}
 
 
 def found(*arguments, code=0):
@@ -348,7 +348,7 @@ class TestRanking:
     @pytest.mark.rest
     def test_processes_change_nothing(self):
         text = HEAD + "".join(f"block,b{k},{0.3 + 0.05 * k},2.8\n" for k in range(12)) + "block,bad,-1,2\n"
-        entries, motion = StructureTable.read(Path(table(text))), rk.read_record(ACCEL)
+        entries, motion = table_of(table(text), None), rk.read_record(ACCEL)
         done = []
         one, two = survey(entries, [motion]), survey(entries, [motion], processes=2, progress=done.append)
         assert [str(row) for row in one.rows] == [str(row) for row in two.rows]
