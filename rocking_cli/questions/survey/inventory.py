@@ -214,21 +214,30 @@ class Item:
         return Problem(message, self.inventory.sheet.file, self.line, field=self.inventory.heading(key), hint=hint)
 
     def make(self) -> Mechanism:
-        """Return the structure: of its two planes the weaker.
+        """Return the structure, in the weaker of its two planes.
 
         Raises
         ------
         InputError
             If the row cannot be used: the file, its line, and the heading of the column.
         """
+        return self._made[0]
+
+    @property
+    def about_depth(self) -> bool:
+        """Whether that plane is the one of its depth; a plain block knows its weaker side by itself."""
+        return self._made[1]
+
+    @cached_property
+    def _made(self) -> tuple[Mechanism, bool]:
         if self.wrong is not None:
             raise self.wrong
         chain = self.chain
         for each in chain[:-1]:
             if each.wrong is not None:
                 raise InputError(self._problem(f"stands on {each.name}, whose row cannot be used", "support"))
-        planes = [self._built(chain, turned=turned) for turned in self._planes(chain)]
-        return min(planes, key=lambda each: round(min(map(each.uplift, Direction)), 9))
+        planes = [(self._built(chain, turned=turned), turned) for turned in self._planes(chain)]
+        return min(planes, key=lambda each: round(lowest_uplift(each[0]), 9))
 
     def _planes(self, chain: Sequence[Item]) -> tuple[bool, ...]:
         if self.plane == "width" or all("depth" not in each.sizes for each in chain):
@@ -351,12 +360,20 @@ class Item:
     def limits(self, motion: GroundMotion) -> Limits:
         """Return what decides besides rocking under a motion of what it stands on, at factors on it."""
         hold, (_, isolator) = self.holds_to(), self.base
+        if hold:  # what it stands on may move with it
+            hold = min([hold, *(lowest_uplift(each.make()) for each in self.chain[:-1])])
         ends = inf
         if isolator is not None:
             below = self.inventory.below_isolator(self, motion)
             ends = isolator.stroke / peak_displacement(below, isolator.period, isolator.damping)
         peak = motion.pga_g
         return Limits(self.room_to_slide, hold / peak if peak > 0 else 0.0, ends)
+
+    def alone(self) -> Item:
+        """Return the object on what the lowest object below it stands on, without those between."""
+        lowest = self.chain[0]
+        base = {key: lowest.sizes[key] for key in ("period", "damping", "stroke") if key in lowest.sizes}
+        return replace(self, on="", floor=lowest.floor, sizes={**self.sizes, **base})
 
     @property
     def room_to_slide(self) -> float:
@@ -527,6 +544,8 @@ class _Reading:
         self._support(self.cells.get("support", ""))
         self._storey_of_room()
         self._check()
+        if self.on and "gap" in self.sizes:
+            self.remarks.append("the free space beside an object that stands on another is not counted")
         if not by_kind and kind == "block":
             self.remarks.append("taken as a block of its sides")
         if floor is None and self.storey is not None and self.inventory.floor is not None:
@@ -649,6 +668,8 @@ class _Reading:
         if word == "object":
             codes = [each for each in map(str.strip, re.split(r"[\s,]+", clause)) if each]
             self.on = next((each for each in reversed(codes) if each in self.inventory_codes), codes[-1])
+            alike = [each for each in self.inventory_codes if each.lstrip("0") == self.on.lstrip("0")]
+            self.on = alike[0] if self.on not in self.inventory_codes and len(alike) == 1 else self.on
         elif word == "raised":
             self.raised = True
             at = f", {lengths[0]:g} m above the floor" if lengths else ""
@@ -747,6 +768,12 @@ class _Reading:
             yield f"it weighs {sizes['mass']:g} kg, but {of} of its sides {heaviest:.3g} kg at most: are units right?"
         elif materials and all(brittle for _, brittle, _ in materials) and density < LIGHTEST * most:
             yield f"it weighs {sizes['mass']:g} kg, {density / most:.1%} of a solid of {self.bare.material}: check it"
+
+
+def lowest_uplift(mechanism: Mechanism) -> float:
+    """Return the uplift acceleration of a structure in its weaker direction and plane [its gravity]."""
+    weaker = mechanism.weaker_side() or mechanism
+    return min(map(weaker.uplift, Direction))
 
 
 def sizes_flat(height: float, across: Sequence[float]) -> bool:

@@ -120,7 +120,7 @@ def remedies(
     around : Neighbourhood
         The neighbours.
     """
-    trial = _Trial(replace(item, on=""), motions, polarities, around)
+    trial = _Trial(item.alone(), motions, polarities, around)
     any_suffices = False
     for attempt in (_base, _ballast, _wires, _wax, _slide, _isolate):
         found = attempt(trial)

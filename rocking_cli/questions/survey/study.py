@@ -39,6 +39,7 @@ MAX_SAMPLES = 400_000_000  # of motions times structures, polarities and neighbo
 NO_NEIGHBOURS = Neighbourhood(0)
 LEVELS = (SAFE_SHARE, 0.5)
 """Shares of neighbours that overturn, for which objects of a list get the peaks of a motion."""
+WEAK_FACTORS = FACTORS[FACTORS < 2.0] / 10  # tried where a motion topples an object at the least of all others
 MAX_DEVIATIONS = 5.0  # standard deviations beyond which no neighbour is drawn
 
 
@@ -470,7 +471,7 @@ def _part(
             odd = [*getattr(entry, "questions", ()), *doubts(made), *(f"{each.name} {each.words}" for each in asked)]
             alone = replace(_alone(place, entry, ready[k], setting, site), doubt="; ".join(odd) or None)
             rows[k] = replace(
-                alone, side="depth" if weaker is not None else None,
+                alone, side="depth" if weaker is not None or getattr(entry, "about_depth", False) else None,
                 remarks=(*made.remarks, *getattr(entry, "remarks", ())),
                 width_alone=made.depth is None and made.may_rock_about_depth(),
             )  # fmt: skip
@@ -563,6 +564,11 @@ def _topples(conditions: Conditions, motion: GroundMotion, limits: Limits) -> To
         if first[LEVELS[-1]] is not None:
             break  # larger factors decide nothing
     assert share is not None
+    if first[LEVELS[0]] == FACTORS[0]:
+        found = margin(conditions, motion, factors=WEAK_FACTORS, limits=limits, threads=1)
+        lower = {level: found.first(level, unknown=True) for level in LEVELS}
+        first |= {level: factor for level, factor in lower.items() if factor is not None and factor < 1}
+        tried = float(WEAK_FACTORS[0]), tried[1]
     return Topples(motion.name, ground.pga_g, pgv, first, tried, share, motion.pga_g)
 
 

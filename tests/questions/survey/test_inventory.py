@@ -341,6 +341,23 @@ class TestShares:
         (row,) = quick(f'{HEAD}1,case,60,50,50,40,oak,"felt 0.1, edge 5 m",A\n').rows
         assert row.topples[0].share.highest == 0 and row.under.slip > 0.01
 
+    def test_wax_holds_no_longer_than_the_pedestal_stands(self):
+        text = (
+            f'{HEAD}1,vase,60,20,20,5,clay,"on 2, wax 100 cm2 400 kPa 300 kPa",A\n2,pedestal,100,14,14,35,MDF,floor,A\n'
+        )
+        made = items(text)["1"]
+        motion = rk.read_record(ACCEL)
+        height = (35 * 0.50 + 5 * 1.30) / 40
+        assert made.holds_to() > 1
+        assert made.limits(motion).held_to * motion.pga_g == pytest.approx(0.07 / height)
+
+    def test_a_weak_motion_that_topples_is_named_below_a_fifth(self):
+        strong = rk.read_record(ACCEL).scaled(8)
+        (row,) = quick(f"{HEAD}1,amphora,68,16,16,5.2,clay,floor,A\n", strong).rows
+        (plain_row,) = quick(f"{HEAD}1,amphora,68,16,16,5.2,clay,floor,A\n").rows
+        assert row.topples[0].factors[0.05] < 0.2
+        assert row.toppled_from(0.05)[0] == pytest.approx(plain_row.toppled_from(0.05)[0], rel=0.06)
+
 
 class TestRemedies:
     """Each number by a formula of its own, and each remedy tried again as a list that says it."""
@@ -396,6 +413,14 @@ class TestRemedies:
         )
         (margin,) = rk.margin(block, ACCEL, polarity="1", neighbours=40).values()
         assert margin.share.highest <= 0.05
+
+    def test_on_a_pedestal_it_is_tried_on_the_floor_of_that(self):
+        building = Floor.parse("T1=0.3,xi=0.05,z/H=0,n=3")
+        head = "No,Name,Height (cm),Width (cm),Depth (cm),Weight (kg),Support,Floor\n"
+        made = items(f"{head}1,vase,60,20,20,5,on 02,\n2,plinth,50,60,60,90,floor,3\n", building)
+        motion = rk.read_record(ACCEL)
+        (on_plinth,), (alone,) = (each.under([motion]) for each in (made["1"], made["1"].alone()))
+        assert on_plinth.pga_g == alone.pga_g > motion.pga_g
 
     def test_no_sand_in_marble(self):
         _, _, every = self.every(f"{HEAD}1,stele,100,20,20,50,marble,floor,A\n")
