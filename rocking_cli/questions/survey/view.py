@@ -27,6 +27,7 @@ from rocking_cli.views.view import Aside, Table, View, number
 
 MAX_NAME_LENGTH = 30  # characters, in the table
 MAX_CAUTIONED = 3  # structures whose cautions are printed
+FAR_SLIP = 0.01  # m, from which the slip of an object is said
 SATURATED = 0.99  # share of neighbours from which ranks hardly differ
 PLAIN_FRICTION = 0.3  # coefficient of friction that many floors are taken to have
 CODE = re.compile(r"[-+]?(0\d|\d{16})")
@@ -142,7 +143,7 @@ UNDER_MOTIONS: tuple[Column[RankedStructure], ...] = (
     Column("worst", of("found.under.worst"), text=True),
 )
 OF_LIST: tuple[Column[RankedStructure], ...] = (
-    Column("danger", of("found.danger"), head="it", text=True),
+    Column("danger", of("found.danger"), head="in short", text=True),
     *(
         Column(
             f"{key}_{100 * level:.0f}",
@@ -323,6 +324,8 @@ def counts(found: Survey) -> list[str]:
         lines.append(" ".join(_of_site(rows)))
     if found.motions:
         lines.append(_of_motions(found))
+    if any(each.topples for each in rows):
+        lines.append(_of_list(rows))
     if turned := [each for each in rows if each.side is not None]:
         lines.append(
             f"{_named(turned)}: ranked about the depth, the weaker side of the base. Exchange the two for "
@@ -393,6 +396,16 @@ def _of_motions(found: Survey) -> str:
     )
 
 
+def _of_list(rows: Sequence[Surveyed]) -> str:
+    """Return how many objects of a list fall, may fall and stand, and what these words mean."""
+    count = Counter(each.danger for each in rows)
+    return (
+        f"Objects that fall: {count['falls']:,}, that may fall: {count['may fall']:,}, and that stand: "
+        f"{count['stands']:,}. Of the neighbours of the worst motion, half or more, more than {percent(LEVELS[0])}, or "
+        "at most so many overturn them or have an unknown outcome."
+    )
+
+
 def _structures(count: int) -> str:
     return f"{count:,} structure{'s' * (count != 1)}"
 
@@ -405,6 +418,7 @@ def sentences(found: Survey, top: int | None = None, say: Language = ENGLISH) ->
     lines.append(Aside(f"Ranked {ranked}."))
     if found.pga:
         lines.append(" ".join(_of_peaks(found)))
+    lines += _of_supports(found)
     if found.motions and any(row.z for row in rows):
         lines.append("The motions are the same at every height z: the floors of a site only concern its code.")
     if found.motions:
@@ -454,6 +468,25 @@ def _of_peaks(found: Survey) -> Iterator[str]:
         yield f"Motions {way} only: {other}"
     if len(found.motions) == 1 and found.around.count:
         yield "One record is one sample: use several."
+
+
+def _of_supports(found: Survey) -> Iterator[str]:
+    """Yield on what objects of a list stand that is not the ground, and which ones slide far."""
+    of = {each.name: found.items[each.row - 1] for each in found.rows} if found.items and found.motions else {}
+    rows = [each for each in found.rows if each.topples]
+    if moved := [each for each in rows if of[each.name].base != (None, None)]:
+        peaks = [peak.base_pga for each in moved for peak in each.topples]
+        yield f"{_named(moved)}: on floors or isolators of their own, {_peaks('with a PGA', peaks)}."
+    if high := [
+        each for each in rows if of[each.name].storey and of[each.name].base[0] is None and not found.floor_pga
+    ]:
+        yield (
+            f"Caution: {_named(high)}: on an upper floor, which moves more than the ground, whose motion was used. "
+            f"Give {named('floor')}, such as T1=0.3,z/H=0,n=3: then each stands on its own storey."
+        )
+    if far := [each for each in rows if each.under is not None and each.under.slip >= FAR_SLIP]:
+        most = max(each.under.slip for each in far if each.under is not None)
+        yield f"{_named(far)}: slides by up to {number(most, 2)} m: keep that clear on all sides."
 
 
 def _peaks(what: str, peaks: Sequence[float]) -> str:
