@@ -33,7 +33,11 @@ else:  # heavy to import, and not checked by the model
 class SurveyAsked(MaybeUnderMotions, OfJoints, Around, InLanguage, Identity, WithTable):
     """Rank many structures, one per table row, by vulnerability.
 
-    The columns of the table are `mechanism`, `name` and fields of mechanisms, with dots for nested fields
+    A list of objects as their owners write it, with heights, widths, depths, weights, rooms and supports, is read by
+    its words, in English or Italian. Under ground motions, each object then has the peaks at which 5 and 50 % of its
+    neighbours overturn, and what to do.
+
+    Otherwise the columns of the table are `mechanism`, `name` and fields of mechanisms, with dots for nested fields
     (loads.0.mass, ties.bar.stiffness); each row may have any mechanism. A column `file` names YAML files, whose fields
     the other columns replace. An empty cell means that the field is not given; give units in cells (800 mm) or in
     headings (width [mm]). Italian headings are read too. TABLE.csv may be - for standard input.
@@ -52,14 +56,15 @@ class SurveyAsked(MaybeUnderMotions, OfJoints, Around, InLanguage, Identity, Wit
 
     \b
     Example:
+      rocking survey inventory.csv --record "records/*.AT2" --out ranked.csv
       rocking survey parapets.csv --page parapets.html
       rocking survey parapets.csv --record "records/*.AT2" --polarity both --out ranked.csv
     """
 
     writes_each: ClassVar[bool] = True  # the table before the sheets, which take longer and may fail
     structures: str | Path | Mapping[str, Sequence[Any]] | StructureTable | Sequence[StructureLike] = option(
-        "A table of structures as CSV, .xlsx, .xls or .ods, or its columns by their headings (a frame of pandas is "
-        "one); or structures, or their YAML files.",
+        "A table of structures, or a list of objects, as CSV, .xlsx, .xls or .ods, or its columns by their headings (a "
+        "frame of pandas is one); or structures, or their YAML files.",
         where="input", default=..., typed="TABLE.csv",
     )  # fmt: skip
     site: SiteLike | None = option(
@@ -100,6 +105,7 @@ class SurveyAsked(MaybeUnderMotions, OfJoints, Around, InLanguage, Identity, Wit
         Idle("without calculation sheets: give {sheets}", lambda asked: asked.sheets is None, ("sheet_format",)),
         Idle("without a page or calculation sheets: give {page} or {sheets}",
              lambda asked: asked.sheets is None and asked.page is None, IDENTITY),
-        Idle("without ground motions", lambda asked: not asked.ground_motions, ("polarity", "opening", *NEIGHBOURS)),
-        Idle("without neighbours", lambda asked: asked.neighbours == 0, DEVIATIONS),
+        Idle("without ground motions", lambda asked: not asked.ground_motions,
+             ("polarity", "opening", "remedies", *NEIGHBOURS)),
+        Idle("without neighbours", lambda asked: asked.neighbours == 0, ("remedies", *DEVIATIONS)),
     )  # fmt: skip

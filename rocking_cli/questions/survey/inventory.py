@@ -45,10 +45,10 @@ FAR_GROUND = 40.0  # m: half of the width of the ground below objects on objects
 DEFAULT_DAMPING = 0.05
 NEVER_ROCKS = 1.0  # half of the foot over the height of the centroid, from which no usual friction lets it rock
 BALLAST_HEIGHT = 0.05  # of the middle of what is put in its foot, over the height of an object
-_LETTERED = re.compile(r"(?i)\b(h|w|d|l|p|ø|diam|dia|alt|larg|prof)\b\.?\s*:?\s*(\d+(?:[.,]\d+)?)")
+_LETTERED = re.compile(r"(?i)\b(h|w|d|l|p|ø|diam|dia|alt|larg|prof)\b\.?\s*:?\s*([0-9]+(?:[.,][0-9]+)?)")
 _LETTERS = {"h": "height", "alt": "height", "w": "width", "l": "width", "larg": "width", "d": "depth", "p": "depth",
             "prof": "depth", "ø": "diameter", "diam": "diameter", "dia": "diameter"}  # fmt: skip
-_QUANTITY = re.compile(r"(?<![\w.,])(\d+(?:[.,]\d+)?)\s*(kPa|MPa|Pa|kN|N|mm2|cm2|m2|mm|cm|m|s|%)?(?![\w])")
+_QUANTITY = re.compile(r"(?<![\w.,])([0-9]+(?:[.,][0-9]+)?)\s*(kPa|MPa|Pa|kN|N|mm2|cm2|m2|mm|cm|m|s|%)?(?![\w])")
 _TRAILING = re.compile(r"(?i)(.*?)[\s,_/]+(?:in\s+)?(mm|cm|m|kg|g|lb|ft)\.?")
 _CLAUSES = re.compile(r"\s*[;+]\s*|,\s+|,(?=\D)")
 
@@ -599,7 +599,7 @@ class _Reading:
         if lettered := _LETTERED.findall(words):
             pairs = [(_LETTERS[letter.lower()], number) for letter, number in lettered]
         else:
-            numbers = re.findall(r"\d+(?:[.,]\d+)?", words)
+            numbers = re.findall(r"[0-9]+(?:[.,][0-9]+)?", words)
             pairs = [*zip(("height", "width", "depth"), numbers[:3], strict=False)]
             self.remarks.append("sides are read as height x width x depth")
         self.sizes |= {key: read(f"{number.replace(',', '.')} {unit}", "m") for key, number in pairs}
@@ -825,7 +825,7 @@ def _ordinal(text: str) -> int | None:
     key = _word_in(text, catalogue()["ordinals"])
     if key is not None:
         return int(key)
-    match = re.search(r"(?i)\b(?:floor|piano|storey|level|livello)\s*(\d+)\b", text)
+    match = re.search(r"(?i)\b(?:floor|piano|storey|level|livello)\s*([0-9]+)\b", text)
     return int(match[1]) if match else None
 
 

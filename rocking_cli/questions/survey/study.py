@@ -558,15 +558,15 @@ def _topples(conditions: Conditions, motion: GroundMotion, limits: Limits) -> To
     first: dict[float, float | None] = dict.fromkeys(LEVELS)
     share: NeighbourShare | None = None
     for part in (FACTORS[FACTORS <= 1], *np.array_split(FACTORS[FACTORS > 1], 3)):
-        found = margin(conditions, motion, factors=part, limits=limits, threads=1)
-        share = share or found.share
-        first |= {level: found.first(level, unknown=True) for level in LEVELS if first[level] is None}
+        shares = margin(conditions, motion, factors=part, limits=limits, threads=1)
+        share = share or shares.share
+        first |= {level: shares.first(level, unknown=True) for level in LEVELS if first[level] is None}
         if first[LEVELS[-1]] is not None:
             break  # larger factors decide nothing
     assert share is not None
     if first[LEVELS[0]] == FACTORS[0]:
-        found = margin(conditions, motion, factors=WEAK_FACTORS, limits=limits, threads=1)
-        lower = {level: found.first(level, unknown=True) for level in LEVELS}
+        shares = margin(conditions, motion, factors=WEAK_FACTORS, limits=limits, threads=1)
+        lower = {level: shares.first(level, unknown=True) for level in LEVELS}
         first |= {level: factor for level, factor in lower.items() if factor is not None and factor < 1}
         tried = float(WEAK_FACTORS[0]), tried[1]
     return Topples(motion.name, ground.pga_g, pgv, first, tried, share, motion.pga_g)

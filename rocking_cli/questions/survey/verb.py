@@ -58,6 +58,7 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
     """
     from rocking_cli.io.tables import PARQUET, XLSX
     from rocking_cli.plotting.style import in_language
+    from rocking_cli.questions.survey.inventory import Inventory
     from rocking_cli.questions.survey.study import survey as study
     from rocking_cli.questions.survey.view import blocks, columns, texts_in, title, view
     from rocking_cli.views.cautions import cautions_of
@@ -66,6 +67,8 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
     language_of(asked.language, where, watch)
     requested = asked.ground_motions
     entries = _entries(asked.structures, requested.reading.floor, watch)
+    if asked.remedies == "all" and not isinstance(entries, Inventory):
+        raise InputError(f"{named('remedies')} all requires a list of objects, by heights, widths and depths")
     first, by_code = _first_site(entries, where), where is not None or bool(getattr(entries, "sites", ()))
     say = texts_in(language := language_of(asked.language, first, watch))
     if asked.sheets is not None and not by_code:
