@@ -85,7 +85,7 @@ class Isolator(NamedTuple):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Item:
+class ListedObject:
     """An object of a collection; lengths in m, masses in kg, stresses in Pa, forces in N, None where not given.
 
     Parameters
@@ -191,7 +191,7 @@ class Item:
         return min(self.widths(turned=turned)[1] for turned in (False, True))
 
     @property
-    def chain(self) -> list[Item]:
+    def chain(self) -> list[ListedObject]:
         """It and the objects below it, the lowest first. Raises `InputError` if one is missing, or they go round."""
         chain = [self]
         while chain[0].on:
@@ -205,7 +205,7 @@ class Item:
         return chain
 
     @property
-    def carried(self) -> list[Item]:
+    def carried(self) -> list[ListedObject]:
         """The objects that stand on it, and those on them."""
         direct = [each for each in self.inventory.items if each.on and each.on == self.code and each is not self]
         return [each for one in direct for each in (one, *one.carried)]
@@ -239,7 +239,7 @@ class Item:
         planes = [(self._built(chain, turned=turned), turned) for turned in self._planes(chain)]
         return min(planes, key=lambda each: round(lowest_uplift(each[0]), 9))
 
-    def _planes(self, chain: Sequence[Item]) -> tuple[bool, ...]:
+    def _planes(self, chain: Sequence[ListedObject]) -> tuple[bool, ...]:
         if self.plane == "width" or all("depth" not in each.sizes for each in chain):
             return (False,)
         return (False,) if len(chain) == 1 and not self._has_foot else (False, True)  # a block knows its weaker side
@@ -249,7 +249,7 @@ class Item:
         widths = [self.widths(turned=turned) for turned in (False, True)]
         return "centre" in self.sizes or any(abs(foot / body - 1) > SAME_SIDE for body, foot in widths)
 
-    def _built(self, chain: Sequence[Item], *, turned: bool) -> Mechanism:
+    def _built(self, chain: Sequence[ListedObject], *, turned: bool) -> Mechanism:
         if len(chain) == 1:
             mechanism, fields = self._alone(turned=turned)
         else:
@@ -318,7 +318,7 @@ class Item:
             raise InputError(self._problem("has no weight, which is needed as it stands on another object", "mass"))
         return self.mass
 
-    def _stacked(self, chain: Sequence[Item], *, turned: bool) -> dict[str, Any]:
+    def _stacked(self, chain: Sequence[ListedObject], *, turned: bool) -> dict[str, Any]:
         """Return the fields of an assembly: the objects below it, it, and what it carries as masses."""
         blocks, frictions, base, below = dict[str, Any](), dict[str, float](), 0.0, "floor"
         for each in chain:
@@ -369,7 +369,7 @@ class Item:
         peak = motion.pga_g
         return Limits(self.room_to_slide, hold / peak if peak > 0 else 0.0, ends)
 
-    def alone(self) -> Item:
+    def alone(self) -> ListedObject:
         """Return the object on what the lowest object below it stands on, without those between."""
         lowest = self.chain[0]
         base = {key: lowest.sizes[key] for key in ("period", "damping", "stroke") if key in lowest.sizes}
@@ -407,7 +407,7 @@ class Item:
         return usual
 
 
-class Inventory(Sequence[Item]):
+class Inventory(Sequence[ListedObject]):
     """The objects of a list.
 
     Parameters
@@ -427,7 +427,7 @@ class Inventory(Sequence[Item]):
         self.sheet, self.floor = sheet, floor
         self.places, self.unread = self._columns()
         self.items = [self._item(row) for row in sheet.rows]
-        self.by_code: dict[str, Item] = {}
+        self.by_code: dict[str, ListedObject] = {}
         for k, each in enumerate(self.items):
             if each.code and self.by_code.setdefault(each.code, each) is not each:
                 first = self.by_code[each.code].line
@@ -468,7 +468,7 @@ class Inventory(Sequence[Item]):
             self._moved[key] = tuple(on_floor)
         return self._moved[key]
 
-    def below_isolator(self, item: Item, motion: GroundMotion) -> GroundMotion:
+    def below_isolator(self, item: ListedObject, motion: GroundMotion) -> GroundMotion:
         """Return the motion below the isolator of an object, for that on it."""
         floor, _ = item.base
         floor = self.floor if floor is None else floor
@@ -506,10 +506,10 @@ class Inventory(Sequence[Item]):
                 raise InputError(Problem(what, self.sheet.file, self.sheet.line, field=field_, hint=hint))
         return places, unread
 
-    def _item(self, row: Row) -> Item:
+    def _item(self, row: Row) -> ListedObject:
         """Return the object of a row, with what is wrong with it."""
         cells = {key: row.cells[k] for key, (k, _) in self.places.items()}
-        item = Item(
+        item = ListedObject(
             inventory=self, row=row, code=cells.get("code", ""), title=one_line(cells.get("name", "")),
             room=one_line(cells.get("room", "")), material=one_line(cells.get("material", "")),
         )  # fmt: skip
@@ -522,12 +522,12 @@ class Inventory(Sequence[Item]):
 class _Reading:
     """A row of a list that is being read."""
 
-    def __init__(self, inventory: Inventory, item: Item, cells: Mapping[str, str]) -> None:
+    def __init__(self, inventory: Inventory, item: ListedObject, cells: Mapping[str, str]) -> None:
         self.inventory, self.bare, self.cells = inventory, item, cells
         self.sizes, self.remarks, self.questions = dict[str, float](), list[str](), list[str]()
         self.on, self.raised, self.storey = "", False, None  # type: str, bool, int | None
 
-    def item(self) -> Item:
+    def item(self) -> ListedObject:
         """Return the object. Raises `InputError` if the row cannot be used."""
         if self.bare.row.too_many is not None:
             what = f"has more cells than headings; the first extra cell is {cut(one_line(self.bare.row.too_many))!r}"

@@ -15,7 +15,7 @@ from rocking_cli.errors import RockingError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.processing.oscillator import peak_displacement
 from rocking_cli.questions.margin.study import margin
-from rocking_cli.questions.survey.inventory import Item
+from rocking_cli.questions.survey.inventory import ListedObject
 from rocking_cli.structure import Structure
 from rocking_cli.studies.neighbours import Conditions, Neighbourhood, simulate_neighbours
 
@@ -56,32 +56,32 @@ class Remedy:
 class _Trial:
     """An object under the motions of the ground, as remedies are tried on it."""
 
-    item: Item
+    item: ListedObject
     motions: Sequence[GroundMotion]
     polarities: Sequence[int]
     around: Neighbourhood
 
-    def conditions(self, item: Item) -> Conditions:
+    def conditions(self, item: ListedObject) -> Conditions:
         made = item.make()
         return Conditions(
             Structure(made.weaker_side() or made), ["nonlinear"], self.polarities, around=self.around
         )  # fmt: skip
 
-    def share(self, item: Item) -> float:
+    def share(self, item: ListedObject) -> float:
         """Return the largest share of neighbours that may overturn an object, of all motions; 1 if none is known."""
         try:
             conditions, worst = self.conditions(item), 0.0
             for motion in item.under(self.motions):
                 limits = item.limits(motion)
-                found = margin(conditions, motion, factors=np.ones(1), limits=limits, threads=1)
-                worst = max(worst, found.share.highest)
+                shares = margin(conditions, motion, factors=np.ones(1), limits=limits, threads=1)
+                worst = max(worst, shares.share.highest)
                 if worst > SAFE_SHARE:
                     break
         except RockingError:
             return 1.0
         return worst
 
-    def least(self, changed: Callable[[float], Item], values: Sequence[float]) -> float | None:
+    def least(self, changed: Callable[[float], ListedObject], values: Sequence[float]) -> float | None:
         """Return the least of some values with which it stands, as it does with the next one; None without one.
 
         Values are halved as if each that is larger than one that suffices did so too.
@@ -105,13 +105,13 @@ class _Trial:
 
 
 def remedies(
-    item: Item, motions: Sequence[GroundMotion], polarities: Sequence[int], around: Neighbourhood
+    item: ListedObject, motions: Sequence[GroundMotion], polarities: Sequence[int], around: Neighbourhood
 ) -> Iterator[Remedy]:
     """Yield remedies of an object in the order in which they are tried; the last is "none" if none of them suffices.
 
     Parameters
     ----------
-    item : Item
+    item : ListedObject
         The object, which is tried alone on what it stands on, if that is another object.
     motions : sequence of GroundMotion
         The ground motions.
@@ -123,19 +123,19 @@ def remedies(
     trial = _Trial(item.alone(), motions, polarities, around)
     any_suffices = False
     for attempt in (_base, _ballast, _wires, _wax, _slide, _isolate):
-        found = attempt(trial)
-        if found is not None:
-            any_suffices |= bool(found.suffices) and not found.against
-            yield found
+        remedy = attempt(trial)
+        if remedy is not None:
+            any_suffices |= bool(remedy.suffices) and not remedy.against
+            yield remedy
     if not any_suffices:
         yield Remedy("none", suffices=False)
 
 
-def _with(item: Item, **sizes: float) -> Item:
+def _with(item: ListedObject, **sizes: float) -> ListedObject:
     return replace(item, sizes={**item.sizes, **sizes})
 
 
-def _widened(item: Item, by: float) -> Item:
+def _widened(item: ListedObject, by: float) -> ListedObject:
     (_, foot), (_, deep) = (item.widths(turned=turned) for turned in (False, True))
     return _with(item, foot=foot + by) if item.is_round else _with(item, foot=foot + by, foot_depth=deep + by)
 
@@ -156,7 +156,7 @@ def _ballast(trial: _Trial) -> Remedy | None:
     return None if ballast is None else Remedy("ballast", suffices=True, numbers={"mass": ballast})
 
 
-def _bends(item: Item) -> bool:
+def _bends(item: ListedObject) -> bool:
     return item.cracks and item.height / item.least_foot >= BENDS_FROM
 
 

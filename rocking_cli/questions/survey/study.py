@@ -24,7 +24,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.io.spreadsheet import Spreadsheet
 from rocking_cli.names import OPENING
 from rocking_cli.questions.margin.study import FACTORS, Limits, limited, margin
-from rocking_cli.questions.survey.inventory import Inventory, Item
+from rocking_cli.questions.survey.inventory import Inventory, ListedObject
 from rocking_cli.questions.survey.remedies import SAFE_SHARE, Remedy, remedies
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure, check_opening
@@ -334,7 +334,7 @@ class Survey:
         The unit of each number that the code of the site has for a row, by its name.
     sheet : Spreadsheet, optional
         The table from which the structures were read.
-    items : sequence of Item
+    items : sequence of ListedObject
         The objects of a list, by row; empty if the structures are not those of a list.
     """
 
@@ -349,7 +349,7 @@ class Survey:
     polarities: Sequence[int] = ()
     pga: Sequence[float] = ()
     floor_pga: Sequence[float] = ()
-    items: Sequence[Item] = ()
+    items: Sequence[ListedObject] = ()
 
     def cells(self, found: Surveyed) -> Sequence[str]:
         """Return the cells of a structure in its table; none without a table."""
@@ -475,7 +475,7 @@ def _part(
                 remarks=(*made.remarks, *getattr(entry, "remarks", ())),
                 width_alone=made.depth is None and made.may_rock_about_depth(),
             )  # fmt: skip
-            if isinstance(entry, Item):
+            if isinstance(entry, ListedObject):
                 ready[k].model("nonlinear")
             elif _may_move(ready[k], setting):
                 ready[k].model("nonlinear")
@@ -493,7 +493,7 @@ def _part(
         objects = dict[int, _OfObject]()
         for k, structure in ready.items():
             entry = entries[first + k]
-            if isinstance(entry, Item):
+            if isinstance(entry, ListedObject):
                 objects[k] = _of_object(entry, structure, setting)
                 answers[k] = objects[k].answer
         count = setting.around.count
@@ -519,7 +519,7 @@ class _OfObject(NamedTuple):
     remedies: Sequence[Remedy] = ()
 
 
-def _of_object(item: Item, structure: Structure, setting: Setting) -> _OfObject:
+def _of_object(item: ListedObject, structure: Structure, setting: Setting) -> _OfObject:
     """Return what an object does under the motions of what it stands on; without neighbours only its response."""
     around = setting.around
     on_base = setting._replace(motions=item.under(setting.motions), around=replace(around, count=0))
