@@ -268,18 +268,13 @@ class ListedObject:
         (body, foot), mass, sizes = self.widths(turned=turned), self.mass, self.sizes
         fields: dict[str, Any] = {"friction": sizes["friction"]} if "friction" in sizes else {}
         if "gap" in sizes:
+            farthest = self.height if foot >= body else self.height / 2
             fields["stops"] = [
-                {"name": side, "point": [sign * body / 2, self.height], "gap": sign * sizes["gap"]}
+                {"name": side, "point": [sign * body / 2, farthest], "gap": sign * sizes["gap"]}
                 for side, sign in (("right neighbour", 1), ("left neighbour", -1))
             ]
-        if carried := self.carried:
-            tops = {self.code: self.height}
-            for each in carried:
-                tops[each.code] = tops[each.on] + each.height
-            fields["loads"] = [
-                {"name": each.name, "mass": each.weighed(), "at": [0.0, tops[each.on] + each.centre]}
-                for each in carried
-            ]  # fmt: skip
+        if loads := self._carries(self.height):
+            fields["loads"] = loads
         if self.ballast:
             low = {"name": "ballast", "mass": self.ballast, "at": [0.0, BALLAST_HEIGHT * self.height]}
             fields["loads"] = [*fields.get("loads", ()), low]
@@ -336,12 +331,18 @@ class ListedObject:
         floor = [[-FAR_GROUND, -1.0], [FAR_GROUND, -1.0], [FAR_GROUND, 0.0], [-FAR_GROUND, 0.0]]
         fields: dict[str, Any] = {"blocks": blocks, "ground": {"floor": {"polygon": floor}}}
         fields |= {"friction_of": frictions} if frictions else {}
-        if carried := self.carried:
-            fields["loads"] = [
-                {"name": each.name, "body": self.name, "mass": each.weighed(), "at": [0.0, base + each.centre]}
-                for each in carried
-            ]
+        if loads := self._carries(base):
+            fields["loads"] = [{**each, "body": self.name} for each in loads]
         return fields
+
+    def _carries(self, top: float) -> list[dict[str, Any]]:
+        """Return what stands on it, whose top is at a height [m], as masses."""
+        tops, loads = {self.code: top}, list[dict[str, Any]]()
+        for each in self.carried:
+            below = tops[each.on]
+            tops[each.code] = below + each.height
+            loads.append({"name": each.name, "mass": each.weighed(), "at": [0.0, below + each.centre]})
+        return loads
 
     @property
     def base(self) -> tuple[Floor | None, Isolator | None]:
@@ -365,7 +366,8 @@ class ListedObject:
         ends = inf
         if isolator is not None:
             below = self.inventory.below_isolator(self, motion)
-            ends = isolator.stroke / peak_displacement(below, isolator.period, isolator.damping)
+            moves = peak_displacement(below, isolator.period, isolator.damping)
+            ends = isolator.stroke / moves if moves > 0 else inf
         peak = motion.pga_g
         return Limits(self.room_to_slide, hold / peak if peak > 0 else 0.0, ends)
 
@@ -389,7 +391,7 @@ class ListedObject:
         -----
         They hold like glass: with all of their strength up to it, and not at all beyond. Wax of tension T pulls in the
         middle of the foot, of width b, and a wire with the force F at the height z: about the edge of the foot
-        m a h_c = (m g + T) b/2 + F z. Wax alone also holds the shear m a.
+        m a h_c = (m g + T) b/2 + F z. The shear m a is held by the wires and by wax, or without wax by friction.
         """
         sizes, mass = self.sizes, self.mass
         if mass is None or not {"wax_area", "wire"} & set(sizes):
@@ -399,8 +401,8 @@ class ListedObject:
         pull = area * sizes.get("wax_tension", 0.0)
         height = sizes.get("wire_height", self.centre)
         turns = ((weight + pull) * self.least_foot / 2 + force * height) / (weight * self.centre)
-        slides = (area * sizes.get("wax_shear", 0.0) + force) / weight if area and "friction" not in sizes else inf
-        return min(turns, slides)
+        shear = area * sizes.get("wax_shear", 0.0) if area else sizes.get("friction", inf) * weight
+        return min(turns, (shear + force) / weight)
 
     def site(self, usual: SiteFile | None) -> SiteFile | None:
         """Return the site of all objects."""
@@ -544,6 +546,8 @@ class _Reading:
         self._support(self.cells.get("support", ""))
         self._storey_of_room()
         self._check()
+        if "edge" in self.sizes and "friction" not in self.sizes:
+            self.remarks.append("the distance to the edge has no effect, as nothing slides without a friction")
         if self.on and "gap" in self.sizes:
             self.remarks.append("the free space beside an object that stands on another is not counted")
         if not by_kind and kind == "block":

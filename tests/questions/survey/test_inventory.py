@@ -155,6 +155,16 @@ class TestByHand:
         # Of both, the weaker: here the pedestal, with the vase on it.
         assert isclose(lambda_of(made["1"].make()), min(0.20 / 0.60, 0.15 / height), rel_tol=1e-6)
 
+    def test_three_on_each_other(self):
+        text = f"{HEAD}1,vase,60,20,20,5,clay,on 2,A\n2,box,40,30,30,10,oak,on 3,A\n3,plinth,100,32,32,40,MDF,floor,A\n"
+        made = items(text)
+        whole = (40 * 0.50 + 10 * 1.20 + 5 * 1.70) / 55
+        upper = (10 * 0.20 + 5 * 0.70) / 15
+        assert isclose(lambda_of(made["3"].make()), 0.16 / whole)
+        every = min(0.10 / 0.30, 0.15 / upper, 0.16 / whole)
+        assert isclose(lambda_of(made["1"].make()), every, rel_tol=1e-6)
+        assert isclose(lambda_of(made["2"].make()), min(0.15 / upper, 0.16 / whole), rel_tol=1e-6)
+
     def test_wires(self):
         # (m g b/2 + F z)/(m g h/2) = (100 9.80665 0.15 + 300 1.2)/(100 9.80665 0.75)
         held = item('150,30,40,100,bronze,"floor, wires 300 N at 1.2 m",G').holds_to()
