@@ -238,7 +238,7 @@ def convex_pieces(corners: Sequence[complex] | Points, others: Sequence[Points] 
 
 def _filled(z: Points, others: Sequence[Points]) -> Points | None:
     """Return the convex hull of a polygon if its hollows are shallow and nothing reaches into them, or None."""
-    hull = _hull(z)
+    hull = hull_of(z)
     size = float(np.abs(z - z.mean()).max())
     if distance(z, hull).max() > SHALLOW_SHARE * size:
         return None
@@ -248,7 +248,7 @@ def _filled(z: Points, others: Sequence[Points]) -> Points | None:
     return hull if (distance(reaching, hull) <= TOUCHING_SHARE * size).all() else None
 
 
-def _hull(z: Points) -> Points:
+def hull_of(z: Points) -> Points:
     """Return the convex hull of some points, anticlockwise."""
     hull: list[complex] = []
     there = sorted(z.tolist(), key=lambda at: (at.real, at.imag))

@@ -21,7 +21,14 @@ from rocking_cli.errors import SolverError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.engines.free_blocks import FALL, NEAR_SHARE, TURN, FreeBlocks
-from rocking_cli.studies.engines.scene import IMPEDANCE, SLIP_STIFFNESS, mujoco_errors, scene
+from rocking_cli.studies.engines.scene import (
+    IMPEDANCE,
+    SLIP_STIFFNESS,
+    diverged,
+    let_slide,
+    mujoco_errors,
+    scene,
+)
 from rocking_cli.studies.picture import box_around
 
 if TYPE_CHECKING:
@@ -200,7 +207,7 @@ class BlockModel:
             ended = max(ended, motion.vertical.duration)
         last = min(ended + max(tail, LONGEST_TAIL), most)
         pushes, lifts = (
-            _held(each, factor_of / self.free.gravity, sample, steps, ended)
+            held_over_steps(each, factor_of / self.free.gravity, sample, steps, ended)
             for each, factor_of in (
                 (motion, factor),
                 (motion.vertical if motion is not None else None, vertical_factor),
@@ -275,19 +282,7 @@ class BlockModel:
             raise SolverError(f"as free blocks it does not stand by itself: {name} moves")
         data.qvel[:] = 0.0
 
-    @staticmethod
-    def _let_slide(data: mujoco.MjData) -> None:
-        """Let contacts slide without opening.
-
-        Contact forces minimise a convex function, by which a contact that slides also opens: its faces part at mu times
-        the rate at which it is braked, so that what slides hops and tilts. What they part by is taken from the rate at
-        which the faces are to part.
-        """
-        if contacts := data.ncon:
-            at, velocity = data.contact.efc_address[data.contact.dim > 1], data.efc_vel
-        if contacts and at.size:
-            braked = data.efc_KBIP[at + 1, 1] * np.sqrt(velocity[at + 1] ** 2 + velocity[at + 2] ** 2)
-            data.efc_aref[at] -= data.contact.friction[data.contact.dim > 1, 0] * braked
+    _let_slide = staticmethod(let_slide)
 
     @cached_property
     def _limits(self) -> Reals:
@@ -302,7 +297,7 @@ class BlockModel:
 
     def _fault(self, data: mujoco.MjData, sunk: Reals) -> str:
         """Return why a state is no answer, in words; empty if it is one."""
-        if not np.isfinite(data.qvel).all() or data.warning.number[_diverged()].any():
+        if diverged(data):
             return "a step diverged"
         if not data.ncon or -data.contact.dist.min() <= self._limits.min():
             return ""
@@ -321,8 +316,7 @@ class BlockModel:
         than what counts as uplift.
         """
         friction = max(self.free.friction, *self.free.frictions.values(), 0.0)
-        creep = friction * (1 / IMPEDANCE[0] - 1) / SLIP_STIFFNESS / 2  # a force over what resists it, and 2/T
-        return self.free.gravity * self.time_constant * (self.time_constant + creep * self.scene.unit_of_time)
+        return self.free.gravity * sinking(self.time_constant, self.scene.unit_of_time, friction)
 
     def _levels(self, data: mujoco.MjData) -> Reals:
         """Return how many joints there are at least between each block and the ground: creep adds up over them."""
@@ -370,14 +364,13 @@ class BlockModel:
         return dict(zip(self.names, self._masses.tolist(), strict=True))
 
 
-def _diverged() -> list[int]:
-    import mujoco
+def sinking(time_constant: float, unit_of_time: float, friction: float) -> float:
+    """Return the distance by which a joint gives way in a unit of time, over the gravitational acceleration [s2]."""
+    creep = friction * (1 / IMPEDANCE[0] - 1) / SLIP_STIFFNESS / 2  # a force over what resists it, and 2/T
+    return time_constant * (time_constant + creep * unit_of_time)
 
-    kinds = mujoco.mjtWarning
-    return [int(kinds.mjWARN_BADQPOS), int(kinds.mjWARN_BADQVEL), int(kinds.mjWARN_BADQACC)]
 
-
-def _held(motion: GroundMotion | None, factor: float, sample: float, steps: int, ended: float) -> list[float]:
+def held_over_steps(motion: GroundMotion | None, factor: float, sample: float, steps: int, ended: float) -> list[float]:
     """Return the ground acceleration in the middle of each step, over g, until the motion ends."""
     count = ceil(ended / sample - ROUNDING) * steps
     if motion is None:

@@ -129,6 +129,45 @@ def scene(free: FreeBlocks, time_constant: float) -> BlockScene:
     return _Builder(free, time_constant).built()
 
 
+def softness(time_constant: float) -> dict[str, Any]:
+    """Return the parameters of contacts that recover in a time, over the unit of time."""
+    return {"solref": [time_constant, 1.0], "solimp": [*IMPEDANCE, FULL_DEPTH * time_constant**2, 0.5, 2.0]}
+
+
+def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
+    """Return a model with the solver of free blocks."""
+    import mujoco
+
+    model = spec.compile()
+    option = model.opt
+    option.cone, option.integrator = mujoco.mjtCone.mjCONE_ELLIPTIC, mujoco.mjtIntegrator.mjINT_IMPLICITFAST
+    option.iterations, option.tolerance, option.impratio = 100, 1e-10, SLIP_STIFFNESS
+    return model
+
+
+def let_slide(data: mujoco.MjData) -> None:
+    """Let contacts slide without opening.
+
+    Contact forces minimise a convex function, by which a contact that slides also opens: its faces part at mu times the
+    rate at which it is braked, so that what slides hops and tilts. What they part by is taken from the rate at which
+    the faces are to part.
+    """
+    if contacts := data.ncon:
+        at, velocity = data.contact.efc_address[data.contact.dim > 1], data.efc_vel
+    if contacts and at.size:
+        braked = data.efc_KBIP[at + 1, 1] * np.sqrt(velocity[at + 1] ** 2 + velocity[at + 2] ** 2)
+        data.efc_aref[at] -= data.contact.friction[data.contact.dim > 1, 0] * braked
+
+
+def diverged(data: mujoco.MjData) -> bool:
+    """Return whether a step has diverged."""
+    import mujoco
+
+    kinds = mujoco.mjtWarning
+    warned = data.warning.number[[int(kinds.mjWARN_BADQPOS), int(kinds.mjWARN_BADQVEL), int(kinds.mjWARN_BADQACC)]]
+    return bool(warned.any()) or not np.isfinite(data.qvel).all()
+
+
 class _Builder:
     """A model of MuJoCo that is being built; its geometries are named by their number."""
 
@@ -141,10 +180,7 @@ class _Builder:
         self.unit_of_time = free.unit_of_time
         self.mass = sum(body.mass for body in free.bodies) + sum(load.mass for load in free.floors)
         self.spec = mujoco.MjSpec()
-        self.soft: dict[str, Any] = {
-            "solref": [time_constant / self.unit_of_time, 1.0],
-            "solimp": [*IMPEDANCE, FULL_DEPTH * (time_constant / self.unit_of_time) ** 2, 0.5, 2.0],
-        }
+        self.soft = softness(time_constant / self.unit_of_time)
         self.geometries: list[tuple[str, float]] = []  # owner and size
         self.bodies = {body.name: self._block(body.name) for body in free.bodies}
 
@@ -169,10 +205,7 @@ class _Builder:
                     geomname1=a, geomname2=b, condim=3 if friction else 1, friction=[friction, friction, 0, 0, 0],
                     **self.soft,
                 )  # fmt: skip
-        model = self.spec.compile()
-        kinds, option = self.mujoco, model.opt
-        option.cone, option.integrator = kinds.mjtCone.mjCONE_ELLIPTIC, kinds.mjtIntegrator.mjINT_IMPLICITFAST
-        option.iterations, option.tolerance, option.impratio = 100, 1e-10, SLIP_STIFFNESS
+        model = compiled(self.spec)
         # MuJoCo orders geometries by their bodies.
         owners, sizes = zip(*(self.geometries[int(model.geom(k).name)] for k in range(model.ngeom)), strict=True)
         return BlockScene(model, self.size, self.unit_of_time, self.mass, owners, np.array(sizes))
