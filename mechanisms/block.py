@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import atan2, cos, isclose, pi, sin
-from typing import ClassVar, Literal
+from typing import ClassVar, Literal, Self
+
+from pydantic import model_validator
 
 from rocking_cli.core import (
     Angle,
@@ -19,13 +21,18 @@ from rocking_cli.core import (
     Reals,
     RigidMotion,
     Sketch,
+    Solid,
     box,
+    geometry_error,
     length,
     quantity,
     rectangle,
     rotation,
 )
 from rocking_cli.core.equivalence import EQUAL_DIRECTIONS
+
+
+ROUND_FOOT = "Its foot is round: it may roll on its rim, out of the plane of motion, which is not modelled."
 
 
 class SingleBody(Mechanism):
@@ -106,7 +113,7 @@ class SingleBody(Mechanism):
 
 
 class Block(SingleBody):
-    """A uniform rectangle on its base."""
+    """A uniform rectangle on its base, or an upright cylinder."""
 
     mechanism: ClassVar[str] = "block"
     title: ClassVar[str] = "rectangular block"
@@ -121,9 +128,34 @@ class Block(SingleBody):
         example="width",
         default=None,
     )
+    section: Literal["round"] | None = quantity(
+        "`round` if its plan is a circle with the width as diameter", example="round", default=None
+    )
+
+    @model_validator(mode="after")
+    def _round_has_no_depth(self) -> Self:
+        for field in ("depth", "plane"):
+            if self.section is not None and getattr(self, field) is not None:
+                raise geometry_error(field, "cannot be combined with section: round, which has no other side")
+        return self
 
     def bodies(self) -> Sequence[Body]:
-        return (box("block", 1.0, self.width, self.height, 0.5j * self.height),)
+        block = box("block", 1.0, self.width, self.height, 0.5j * self.height)
+        if self.section is None:
+            return (block,)
+        return (replace(block, inertia=(0.75 * self.width**2 + self.height**2) / 12),)
+
+    def round_foot(self) -> tuple[float, float] | None:
+        return None if self.section is None else (self.width / 2, self.width**2 / 8)
+
+    def volume(self) -> float:
+        """Return the volume [m3], of a round block without regard to `depth`."""
+        return super().volume() if self.section is None else pi / 4 * self.width**2 * self.height
+
+    def solids(self) -> Mapping[str, Sequence[Solid]]:
+        if self.section is None or self.density is None:
+            return super().solids()
+        return {"block": [Solid("disc", (self.width / 2,), self.density, self.height)]}
 
     def feet(self) -> tuple[complex, complex]:
         return -self.width / 2 + 0j, self.width / 2 + 0j
@@ -150,11 +182,14 @@ class Block(SingleBody):
         return None if aside and upright < (1 - EQUAL_DIRECTIONS) * about_depth else turned
 
     def may_rock_about_depth(self) -> bool:
-        alone = self.plane is None and self.one_sided is None and not (self.ties or self.interlock or self.crushing)
+        free = self.section is None and self.plane is None and self.one_sided is None
+        alone = free and not (self.ties or self.interlock or self.crushing)
         return alone and all(load.mass is not None and load.floor is None for load in self.loads or ())
 
     def own_caution(self) -> str:
-        """Return a caution if the block may rock about its depth, with the lambda of this side, and about a corner."""
+        """Return a caution if the block is round, or may rock about its depth, with its lambda, and about a corner."""
+        if self.section is not None:
+            return ROUND_FOOT
         weaker = self.weaker_side()
         if weaker is None:
             return ""
@@ -166,11 +201,12 @@ class Block(SingleBody):
         )
 
     def rebound_from_impacts(self) -> float | None:
-        """Return the rebound by Housner's impacts in sequence; None with masses on the block.
+        """Return the rebound by Housner's impacts in sequence; None with masses on the block, or if it is round.
 
         See Sorrentino, Al Shawa and Decanini (2011).
         """
-        if self.crushing is not None or any(not load.is_force for load in self.loads or ()):
+        laden = any(not load.is_force for load in self.loads or ())
+        if self.section is not None or self.crushing is not None or laden:
             return None
         sine, cosine = sin(self.alpha(Direction.POSITIVE)), cos(self.alpha(Direction.POSITIVE))
         return (1 - 1.5 * sine**2) ** 2 * abs(1 - 1.5 * cosine**2)
@@ -183,4 +219,4 @@ class Block(SingleBody):
         return Length("2b", left, right), Length("2h", left, left + 1j * self.height)
 
     def sketch(self) -> Sketch:
-        return replace(super().sketch(), uniform=True)
+        return replace(super().sketch(), uniform=self.section is None)

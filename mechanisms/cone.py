@@ -8,7 +8,7 @@ from typing import ClassVar, Literal, Self
 
 from pydantic import model_validator
 
-from mechanisms.block import SingleBody
+from mechanisms.block import ROUND_FOOT, SingleBody
 from rocking_cli.core import Body, Direction, Length, Outline, Solid, geometry_error, length, quantity
 
 SHELL_SCALE = 0.97  # size of the inner cone with which a thin shell is drawn
@@ -23,9 +23,7 @@ class Cone(SingleBody):
     source: ClassVar[str] = "DeJong and Dimitrakopoulos (2014), Table I; DeJong (2012), Engineering Structures 40"
     verified: ClassVar[str] = "closed forms of shell and solid; the hollow cone tends to both"
 
-    caution: ClassVar[str] = (
-        "Its foot is round: it may roll on its rim, out of the plane of motion, which is not modelled."
-    )
+    caution: ClassVar[str] = ROUND_FOOT
     starter: ClassVar[tuple[str, ...]] = ("kind",)
 
     base_radius: float = length("outer radius of the base", symbol="r", example=1.5)
@@ -54,6 +52,11 @@ class Cone(SingleBody):
             level = h / 4 * (1 - k**4) / (1 - k**3)
             about_base = (3 * r**2 / 20 + h**2 / 10) * (1 - k**5) / (1 - k**3)
         return (Body("cone", 1.0, about_base - level**2, 1j * level),)
+
+    def round_foot(self) -> tuple[float, float] | None:
+        k = self.inner_ratio or 0.0
+        solid = 0.3 * (1 - k**5) / (1 - k**3)
+        return self.base_radius, self.base_radius**2 * (0.5 if self.kind == "shell" else solid)
 
     def volume(self) -> float:
         """Return the volume of a solid or hollow cone [m3], without regard to `depth`; a thin shell has none."""

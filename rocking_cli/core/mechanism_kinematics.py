@@ -64,6 +64,10 @@ class Kinematics(StructureFields, ABC):
         """Return phi_cr without masses, loads and ties in closed form [rad]; by default None, for the solver."""
         return None
 
+    def round_foot(self) -> tuple[float, float] | None:
+        """Return radius of a round foot [m], and inertia of the body about its axis over its mass [m2]; None if not."""
+        return None
+
     def rebound_from_impacts(self) -> float | None:
         """Return the rebound from a theory of impacts in sequence; by default None, as there is none for the shape."""
         return None
