@@ -31,7 +31,6 @@ from rocking_cli.core import (
 )
 from rocking_cli.core.equivalence import EQUAL_DIRECTIONS
 
-
 ROUND_FOOT = "Its foot is round: it may roll on its rim, out of the plane of motion, which is not modelled."
 
 

@@ -1,0 +1,330 @@
+"""One free body in three dimensions under a ground motion, simulated by MuJoCo: experimental.
+
+A polygonal foot touches the ground at the corners of its hull. A round foot is MuJoCo's cylinder, whose lowest point is
+exact: a mesh of 64 sides rocks from corner to corner, by which its peaks are 4 % off. Contacts hold the velocity of the
+points that touch; where these change, as on a rim that rolls, MuJoCo leaves out a part of their acceleration, so that
+what rolls gains energy. `_let_roll` adds it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import ceil, cos, nan, sin
+
+import numpy as np
+
+from rocking_cli.arrays import Reals
+from rocking_cli.core.polygons import hull_of
+from rocking_cli.dynamics.deck import RELEASE_DT
+from rocking_cli.excitation.base import GroundMotion
+from rocking_cli.names import ROCKS, UNKNOWN, outcome
+from rocking_cli.short_repr import short_repr
+from rocking_cli.studies.engines.blocks import (
+    LONGEST_TAIL,
+    SETTLING,
+    SOFTNESS,
+    STEPS,
+    SUNK,
+    held_over_steps,
+    sinking,
+    thickness_of,
+)
+from rocking_cli.studies.engines.free import MOVED
+from rocking_cli.studies.engines.scene import compiled, diverged, engine_version, let_slide, mujoco_errors, softness
+from rocking_cli.studies.engines.solid_body import SolidBody
+
+HALVED = 2.0  # factor by which step and softness of the second simulation are smaller
+AGREEMENT = 0.05  # difference of the peaks of both over the larger, up to which the outcome is known
+ROLLING = 0.01  # tilt over alpha above which a round foot rolls; below, it passes from one side to the other
+UPRIGHT = (0.0, 0.0, -1.0)
+DISC = 0.1  # height of the cylinder that is a round foot, over its radius; without effect
+
+
+@short_repr
+@dataclass(frozen=True, eq=False, kw_only=True)
+class SpaceHistory:
+    """The motion of a body in three dimensions.
+
+    Parameters
+    ----------
+    solid : SolidBody
+        The body.
+    time : ndarray, shape (n,)
+        Times of the samples [s], those of the ground motion along x.
+    moved : ndarray, shape (n, 3)
+        Displacement of the point of its base that is below its centroid at rest [m].
+    turned : ndarray, shape (n, 4)
+        Its rotation from rest, as quaternions.
+    rates : ndarray, shape (n, 6)
+        Velocity of its centroid [m/s], and angular velocity about its own axes [rad/s].
+    overturning_time : float
+        Time at which its axis passes the tilt from which it has overturned [s]; NaN if it does not.
+    at_rest : bool
+        Whether it comes to rest.
+    failed : str
+        Why the simulation is no answer, a clause; empty if it is one.
+    """
+
+    solid: SolidBody
+    time: Reals
+    moved: Reals
+    turned: Reals
+    rates: Reals
+    overturning_time: float = nan
+    at_rest: bool = False
+    failed: str = ""
+
+    @cached_property
+    def lean(self) -> Reals:
+        """Horizontal part of the unit vector along its axis, shape (n, 2)."""
+        w, x, y, z = self.turned.T
+        return np.stack([2 * (x * z + w * y), 2 * (y * z - w * x)], axis=1)
+
+    @cached_property
+    def tilt(self) -> Reals:
+        """Angle of its axis from upright [rad]."""
+        w, x, y, z = self.turned.T
+        return np.asarray(np.arctan2(np.hypot(*self.lean.T), w**2 + z**2 - x**2 - y**2))
+
+    @property
+    def azimuth(self) -> Reals:
+        """Direction to which its axis leans, anticlockwise from x [rad]."""
+        return np.asarray(np.arctan2(self.lean[:, 1], self.lean[:, 0]))
+
+    @cached_property
+    def twist(self) -> Reals:
+        """Rotation about its axis [rad]."""
+        return np.asarray(np.unwrap(2 * np.arctan2(self.turned[:, 3], self.turned[:, 0])))
+
+    @property
+    def path(self) -> Reals:
+        """Distance of its base from where it stood, in plan [m]."""
+        return np.asarray(np.hypot(self.moved[:, 0], self.moved[:, 1]))
+
+    @property
+    def peak_ratio(self) -> float:
+        """Largest tilt over alpha; up to overturning if it does."""
+        return float(self.tilt.max()) / self.solid.alpha
+
+    @cached_property
+    def rolled(self) -> float:
+        """Length on which the rim of a round foot rolls [m]; 0 for other feet.
+
+        The point that touches travels along the rim while the body leans; from one side to the other through upright
+        is no rolling.
+        """
+        w, x, y, z = self.turned.T
+        down = 2 * (w * y - x * z) - 2j * (w * x + y * z)  # the lowest point of the rim, in the body
+        start, end = down[:-1], down[1:]
+        along = end - start
+        share = np.clip(-(start * along.conj()).real / np.maximum(np.abs(along) ** 2, np.finfo(float).tiny), 0, 1)
+        rolls = np.abs(start + share * along) > ROLLING * self.solid.alpha
+        return self.solid.radius * float(np.abs(np.angle(end * start.conj()))[rolls].sum())
+
+    @property
+    def outcome(self) -> str:
+        """What it does, in the words of `rocking_cli.names`."""
+        return outcome(
+            uplifts=self.peak_ratio > MOVED, overturned=np.isfinite(self.overturning_time),
+            still_rocking=not self.at_rest, unknown=bool(self.failed),
+            slides=bool(self.path.max() > MOVED * self.solid.height),
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class CheckedHistory:
+    """A history, and a second one with half of step and softness, by which its error is known."""
+
+    history: SpaceHistory
+    halved: SpaceHistory
+
+    @property
+    def doubt(self) -> str:
+        """Why the outcome is not known, a clause; empty if it is."""
+        first, second = self.history, self.halved
+        if why := first.failed or second.failed:
+            return why
+        if first.outcome != second.outcome:
+            return f"with half the time step it is another: {second.outcome}"
+        peaks = sorted((first.peak_ratio, second.peak_ratio))
+        if first.outcome == ROCKS and peaks[1] - peaks[0] > AGREEMENT * peaks[1]:
+            return f"with half the time step the peak is {second.peak_ratio:.3g} instead of {first.peak_ratio:.3g}"
+        return ""
+
+    @property
+    def outcome(self) -> str:
+        """The outcome; unknown if the two histories differ."""
+        return UNKNOWN if self.doubt else self.history.outcome
+
+
+def follow_twice(
+    solid: SolidBody, x: GroundMotion, y: GroundMotion | None = None, z: GroundMotion | None = None
+) -> CheckedHistory:
+    """Simulate a body in three dimensions, and again with half of step and softness; see `follow_in_space`."""
+    return CheckedHistory(*(follow_in_space(solid, x, y, z, halved=halved) for halved in (False, True)))
+
+
+@mujoco_errors()
+def follow_in_space(
+    solid: SolidBody,
+    x: GroundMotion | None,
+    y: GroundMotion | None = None,
+    z: GroundMotion | None = None,
+    *,
+    halved: bool = False,
+    tail: float = 0.0,
+    start_tilt: float = 0.0,
+    azimuth: float = 0.0,
+    spin: Sequence[float] = (0.0, 0.0, 0.0),
+) -> SpaceHistory:
+    """Simulate a body in three dimensions until it is at rest after the motion, or has overturned.
+
+    Parameters
+    ----------
+    solid : SolidBody
+        The body.
+    x, y, z : GroundMotion, optional
+        Components of the ground acceleration along the axes of the body, z upwards: linear between samples and zero
+        after the last; held over each step.
+    halved : bool
+        Whether step and softness are half of those by the rule.
+    tail : float
+        Time after the motion for which it is followed also at rest [s].
+    start_tilt, azimuth : float
+        Tilt in which it starts, and the direction to which it leans [rad].
+    spin : sequence of float
+        Angular velocity about its own axes with which it starts [rad/s]; the point that touches is at rest.
+
+    Raises
+    ------
+    InputError
+        If MuJoCo is not installed.
+    SolverError
+        If MuJoCo fails.
+    """
+    engine_version()
+    motion = _Motion(solid, HALVED if halved else 1.0, x.dt * x.every if x is not None else RELEASE_DT)
+    if start_tilt:
+        motion.start(start_tilt, azimuth, spin)
+    return motion.simulate((x, y, z), tail)
+
+
+class _Motion:
+    """A body as a model of MuJoCo, whose size, weight and gravitational acceleration are 1, and its state."""
+
+    def __init__(self, solid: SolidBody, finer: float, sample: float) -> None:
+        import mujoco
+
+        self.solid, self.sample = solid, sample
+        silhouettes = (solid.points[:, k] + 1j * solid.points[:, 2] for k in (0, 1))
+        thickness = min(thickness_of(hull_of(each)) for each in silhouettes)
+        constant = SOFTNESS * (thickness / solid.gravity) ** 0.5 / finer
+        self.least = solid.gravity * sinking(constant, solid.unit_of_time, solid.friction)
+        self.steps = ceil(sample * STEPS / constant)
+        spec, size, kinds = mujoco.MjSpec(), solid.size, mujoco.mjtGeom
+        touch = {"friction": [solid.friction, 0.0, 0.0], "condim": 3, **softness(constant / solid.unit_of_time)}
+        spec.worldbody.add_geom(type=kinds.mjGEOM_PLANE, size=[0, 0, 1], **touch)
+        xx, yy, zz, xy, xz, yz = (solid.inertia / size**2)[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]].tolist()
+        body = spec.worldbody.add_body(
+            pos=[0, 0, solid.level / size], ipos=[0, 0, 0], mass=1.0, fullinertia=[xx, yy, zz, xy, xz, yz],
+            explicitinertial=True,
+        )  # fmt: skip
+        body.add_freejoint()
+        if solid.radius:
+            flat = DISC * solid.radius / 2
+            at = [0.0, 0.0, (flat - solid.level) / size]
+            disc = [solid.radius / size, flat / size, 0.0]
+            body.add_geom(type=kinds.mjGEOM_CYLINDER, size=disc, pos=at, mass=0.0, **touch)
+        else:
+            away = (solid.points - [0.0, 0.0, solid.level]) / size
+            spec.add_mesh(name="body", uservert=away.ravel().tolist())
+            body.add_geom(type=kinds.mjGEOM_MESH, meshname="body", mass=0.0, **touch)
+        self.model = compiled(spec)
+        self.model.opt.timestep = sample / self.steps / solid.unit_of_time
+        self.model.opt.gravity[:] = UPRIGHT
+        self.data = mujoco.MjData(self.model)
+        mujoco.mj_step(self.model, self.data, ceil(SETTLING / self.model.opt.timestep))
+        self.data.qvel[:] = 0.0
+        self.rest = self.data.qpos.copy()
+        self.sunk = -float(self.data.contact.dist.min(initial=0.0))
+
+    def start(self, tilt: float, azimuth: float, spin: Sequence[float]) -> None:
+        """Lean the body towards an azimuth, over the point of its foot that is farthest there."""
+        import mujoco
+
+        position, turn, frame = self.data.qpos[:3], self.data.qpos[3:], np.zeros(9)
+        turn[:] = [cos(tilt / 2), -sin(tilt / 2) * sin(azimuth), sin(tilt / 2) * cos(azimuth), 0.0]
+        mujoco.mju_quat2Mat(frame, turn)
+        axes = frame.reshape(3, 3)
+        points = self.solid.points
+        if self.solid.radius:
+            points = self.solid.radius * np.array([[cos(azimuth), sin(azimuth), 0.0]])
+        touching = points[(points @ axes[2]).argmin()]
+        arm = axes @ (touching - [0.0, 0.0, self.solid.level]) / self.solid.size
+        position[:] = touching / self.solid.size - arm + [0.0, 0.0, self.rest[2] - self.solid.level / self.solid.size]
+        rates = np.array(spin) * self.solid.unit_of_time
+        self.data.qvel[:3], self.data.qvel[3:] = np.cross(arm, axes @ rates), rates
+
+    def simulate(self, components: Sequence[GroundMotion | None], tail: float) -> SpaceHistory:
+        import mujoco
+
+        solid, sample, data = self.solid, self.sample, self.data
+        ended = max((each.duration for each in components if each is not None), default=0.0)
+        pushes = [held_over_steps(each, 1 / solid.gravity, sample, self.steps, ended) for each in components]
+        pulls, last = UPRIGHT - np.array(pushes).T, ended + max(tail, LONGEST_TAIL)
+        states, deepest, k = [np.concatenate([data.qpos, data.qvel])], 0.0, 0
+        before = ceil(solid.unit_of_time / sample)  # samples in which what rests does not move
+        overturned, failed, at_rest = False, "", False
+        while not failed and not overturned and k * sample < last and not (at_rest and k * sample >= ended + tail):
+            for step in range(k * self.steps, (k + 1) * self.steps):
+                if step <= len(pulls):
+                    self.model.opt.gravity[:] = pulls[step] if step < len(pulls) else UPRIGHT
+                mujoco.mj_step1(self.model, data)
+                if data.ncon:
+                    deepest = max(deepest, -float(data.contact.dist.min()))
+                    let_slide(data)
+                    self._let_roll()
+                mujoco.mj_step2(self.model, data)
+            k += 1
+            states.append(np.concatenate([data.qpos, data.qvel]))
+            if diverged(data):
+                failed = "a step diverged"
+            elif deepest > SUNK + self.sunk:
+                failed = "it sinks into the ground by more than 1 per mille of its size"
+            overturned = 1 - 2 * float(data.qpos[4] ** 2 + data.qpos[5] ** 2) < cos(solid.fallen)
+            at_rest = k * sample >= ended and k >= before and self._rests(states[-1 - before :])
+        places, turned, rates = np.split(np.array(states), [3, 7], axis=1)
+        w, x, y, z = turned.T
+        axis = np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x**2 + y**2)], axis=1)
+        return SpaceHistory(
+            solid=solid, time=sample * np.arange(k + 1.0), turned=turned,
+            moved=solid.size * (places - self.rest[:3]) + solid.level * ([0.0, 0.0, 1.0] - axis),
+            rates=rates * np.repeat([solid.size, 1.0], 3) / solid.unit_of_time,
+            overturning_time=k * sample if overturned else nan, at_rest=at_rest, failed=failed,
+        )  # fmt: skip
+
+    def _let_roll(self) -> None:
+        """Take the acceleration of the points that touch by the rotation of the body from what contacts hold.
+
+        It is omega x dr/dt, r from the centroid to such a point. A corner turns with the body; the point of a rim that
+        touches alone turns with the vertical plane in which the axis leans, at the rate of its azimuth.
+        """
+        data = self.data
+        turning = omega = data.cvel[1, :3]
+        a, b, c = data.xmat[1, 2::3].tolist()
+        squared = a * a + b * b  # of the tilt
+        if self.solid.radius and data.ncon == 1 and squared > (ROLLING * self.solid.alpha) ** 2:
+            p, q, r = omega.tolist()
+            lean = (q * a - p * b) / squared
+            turning = np.array([-lean * b, lean * a, r - c * (p * a + q * b) / squared])
+        arms = data.contact.pos - data.xpos[1]
+        carried = np.outer(arms @ omega, turning) - (omega @ turning) * arms
+        data.efc_aref.reshape(-1, 3)[:] -= carried @ data.contact.frame[0].reshape(3, 3).T
+
+    def _rests(self, states: Sequence[Reals]) -> bool:
+        """Return whether no point of the body moves farther than contacts give way by themselves."""
+        most = np.ptp(np.array(states)[:, :7], axis=0)
+        extent = np.linalg.norm(most[:3]) + 2 * np.linalg.norm(most[3:])
+        return bool(self.solid.size * extent <= self.least)
