@@ -21,14 +21,7 @@ from rocking_cli.errors import SolverError
 from rocking_cli.excitation.base import GroundMotion
 from rocking_cli.short_repr import short_repr
 from rocking_cli.studies.engines.free_blocks import FALL, NEAR_SHARE, TURN, FreeBlocks
-from rocking_cli.studies.engines.scene import (
-    IMPEDANCE,
-    SLIP_STIFFNESS,
-    diverged,
-    let_slide,
-    mujoco_errors,
-    scene,
-)
+from rocking_cli.studies.engines.scene import IMPEDANCE, SLIP_STIFFNESS, diverged, mujoco_errors, scene
 from rocking_cli.studies.picture import box_around
 
 if TYPE_CHECKING:
@@ -282,7 +275,19 @@ class BlockModel:
             raise SolverError(f"as free blocks it does not stand by itself: {name} moves")
         data.qvel[:] = 0.0
 
-    _let_slide = staticmethod(let_slide)
+    @staticmethod
+    def _let_slide(data: mujoco.MjData) -> None:
+        """Let contacts slide without opening.
+
+        Contact forces minimise a convex function, by which a contact that slides also opens: its faces part at mu times
+        the rate at which it is braked, so that what slides hops and tilts. What they part by is taken from the rate at
+        which the faces are to part.
+        """
+        if contacts := data.ncon:
+            at, velocity = data.contact.efc_address[data.contact.dim > 1], data.efc_vel
+        if contacts and at.size:
+            braked = data.efc_KBIP[at + 1, 1] * np.sqrt(velocity[at + 1] ** 2 + velocity[at + 2] ** 2)
+            data.efc_aref[at] -= data.contact.friction[data.contact.dim > 1, 0] * braked
 
     @cached_property
     def _limits(self) -> Reals:

@@ -145,20 +145,6 @@ def compiled(spec: mujoco.MjSpec) -> mujoco.MjModel:
     return model
 
 
-def let_slide(data: mujoco.MjData) -> None:
-    """Let contacts slide without opening.
-
-    Contact forces minimise a convex function, by which a contact that slides also opens: its faces part at mu times the
-    rate at which it is braked, so that what slides hops and tilts. What they part by is taken from the rate at which
-    the faces are to part.
-    """
-    if contacts := data.ncon:
-        at, velocity = data.contact.efc_address[data.contact.dim > 1], data.efc_vel
-    if contacts and at.size:
-        braked = data.efc_KBIP[at + 1, 1] * np.sqrt(velocity[at + 1] ** 2 + velocity[at + 2] ** 2)
-        data.efc_aref[at] -= data.contact.friction[data.contact.dim > 1, 0] * braked
-
-
 def diverged(data: mujoco.MjData) -> bool:
     """Return whether a step has diverged."""
     import mujoco
