@@ -33,6 +33,7 @@ from rocking_cli.ask.kinds import FILE, INTERVAL, NUMBER, POSITIVE, TAIL, WHOLE,
 from rocking_cli.errors import InputError, named
 from rocking_cli.names import FINEST_RTOL, RTOL, TAIL_SECONDS
 from rocking_cli.processing.reading_options import ALL_AZIMUTHS
+from rocking_cli.units import KINDS
 
 if TYPE_CHECKING:
     from typing import Self
@@ -81,10 +82,29 @@ class OfOneMotion(AskedModel):
         "Sampling interval of the vertical component, if its file has no times.", INTERVAL
     )
     vertical_channel: str | None = option("Channel of the vertical component in its file.", Kind(str, "CHANNEL"))
+    transverse: GroundMotion | str | Path | None = option(
+        "Component of the motion along the depth of the body, in three dimensions: a file, or a pulse such as "
+        "sine:0.2g:0.8s.",
+        FILE,
+    )
+    transverse_channel: str | None = option("Channel of the transverse component in its file.", Kind(str, "CHANNEL"))
     with_pulse: PulseShape | None = option(
         "Shape of the pulse in the record whose response is computed as well; without a value, the best-fitting one.",
         alone="best",
     )
+
+
+class InSpace(AskedModel):
+    """Whether the structure moves in three dimensions, and its shape there."""
+
+    in_space: bool = option(
+        "Simulate a single free body in three dimensions (experimental), under the motion along its width.",
+        default=False, typed="3d",
+    )  # fmt: skip
+    mesh: Path | None = option(
+        "Mesh of the body, its shape in three dimensions: OBJ, PLY or STL, z upwards, the motion along x.", FILE
+    )
+    mesh_units: str | None = option("Unit of the coordinates of the mesh.", word(*KINDS["length"], what="unit"))
 
 
 class Shown(AskedModel):
@@ -120,10 +140,16 @@ NOT_OF_BLOCKS = (
     "neighbours", "out", "plot", "animate",
 )  # fmt: skip
 """Fields that have no effect if free blocks alone simulate."""
+NOT_IN_SPACE = (
+    *NOT_BY_ENGINES, "rtol", "opening", "impacts", "contact", "each_block", "restitution", "neighbours", *DEVIATIONS,
+    "animate", "release", "tail", "other", "other_channel", "azimuth",
+)  # fmt: skip
+IN_SPACE = ("transverse", "transverse_channel", "mesh", "mesh_units")
+"""Fields that have no effect in three dimensions, and those that have one there alone."""
 
 
 class RespondAsked(
-    OfStructure, Excited, OfOneMotion, OfModels, ByTolerance, OfRestitution, OfJoints, Around,
+    OfStructure, Excited, OfOneMotion, InSpace, OfModels, ByTolerance, OfRestitution, OfJoints, Around,
     Shown, WithTable,
 ):  # fmt: skip
     """Compute the rocking response of a structure to a ground motion, a release from a tilt, or both.
@@ -138,7 +164,8 @@ class RespondAsked(
     --engine auto lets them; --engine exact leaves them out; --engine blocks simulates them always. The output then has
     the outcome and the peak by each engine, when their rotations part, the friction that each requires, and how far the
     joints open that the mechanism keeps closed. Restitution has no effect on free blocks: it is what their contacts
-    give. They overturn when a block falls by 0.15 of the structure's height, or turns by 0.8 rad.
+    give. They overturn when a block falls by 0.15 of the structure's height, or turns by 0.8 rad. With --3d, a single
+    body rocks, rolls, turns and slides in three dimensions (experimental).
 
     With several motions, the output has one row per motion (with --json, one object per line), and --out and --plot
     write one file per motion, with its name in the file name. A motion that cannot be used is reported and skipped, and
@@ -156,6 +183,7 @@ class RespondAsked(
       rocking respond frame.yaml --pulse ricker:0.4g:1.2s --polarity both
       rocking respond frame.yaml --record accel.csv --with-pulse --plot response.png
       rocking respond arch.yaml --record accel.csv --scale 2 --engine blocks --animate both.html
+      rocking respond statue.yaml --record x.AT2 --engine blocks --3d --transverse y.AT2 --vertical z.AT2
     """
 
     writes_each: ClassVar[bool] = True
@@ -186,16 +214,22 @@ class RespondAsked(
         ),
         Idle(
             "without a ground motion: give {motions}", lambda asked: not asked.ground_motions,
-            ("polarity", "vertical", "vertical_dt", "vertical_channel", "neighbours", "animate"),
+            ("polarity", "vertical", "vertical_dt", "vertical_channel", "neighbours", "animate", "in_space"),
         ),
+        Idle("without {in_space}", lambda asked: not asked.in_space, IN_SPACE),
+        Idle("without {engine} blocks", lambda asked: asked.engine != "blocks", ("in_space",)),
+        Idle("in three dimensions", lambda asked: asked.in_space, NOT_IN_SPACE),
+        Idle("without {transverse}", lambda asked: asked.transverse is None, ("transverse_channel",)),
+        Idle("without {mesh}", lambda asked: asked.mesh is None, ("mesh_units",)),
         Idle("without a record", lambda asked: not asked.ground_motions.has_records, ("with_pulse",)),
         Idle(
-            "with {polarity} both: give one polarity", lambda asked: asked.polarity == "both", ("with_pulse", "animate")
+            "with {polarity} both: give one polarity", lambda asked: asked.polarity == "both",
+            ("with_pulse", "animate", "in_space"),
         ),
         Idle("without {vertical}", lambda asked: asked.vertical is None, ("vertical_dt", "vertical_channel")),
         Idle(
             "with several motions: give the one to which it belongs", lambda asked: asked.ground_motions.count > 1,
-            ("vertical", "animate"),
+            ("vertical", "animate", "in_space"),
         ),
         Idle(
             "with free blocks that are requested: leave out {engine}, so that they go on by themselves",

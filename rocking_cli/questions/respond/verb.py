@@ -85,6 +85,10 @@ def respond(asked: RespondAsked, watch: Watcher) -> ResponseAnswer | Answers[Res
         from rocking_cli.questions.animate.verb import check_program
 
         check_program(asked.animate)
+    if asked.in_space:
+        from rocking_cli.questions.respond.in_space import in_space
+
+        return in_space(structure, asked, watch)  # type: ignore[return-value]
     motions, chosen = asked.ground_motions, list[Scaled]()
     if asked.engine in WITH_BLOCKS and structure.no_model is not None:
         asked.refuse(f"as {structure.no_model}", NOT_OF_BLOCKS)

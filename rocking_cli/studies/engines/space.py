@@ -37,6 +37,8 @@ from rocking_cli.studies.engines.solid_body import SolidBody
 
 HALVED = 2.0  # factor by which step and softness of the second simulation are smaller
 AGREEMENT = 0.05  # difference of the peaks of both over the larger, up to which the outcome is known
+UNSETTLED = 0.1  # difference of their largest turn and path over the larger, up to which these are known
+TURNED = 1e-3  # rad, below which a turn is not looked at
 ROLLING = 0.01  # tilt over alpha above which a round foot rolls; below, it passes from one side to the other
 UPRIGHT = (0.0, 0.0, -1.0)
 DISC = 0.1  # height of the cylinder that is a round foot, over its radius; without effect
@@ -152,6 +154,17 @@ class CheckedHistory:
         if first.outcome == ROCKS and peaks[1] - peaks[0] > AGREEMENT * peaks[1]:
             return f"with half the time step the peak is {second.peak_ratio:.3g} instead of {first.peak_ratio:.3g}"
         return ""
+
+    @property
+    def unsettled(self) -> str:
+        """What else differs between the two by more than 10 %, in words: turn and path; empty if nothing does."""
+        pairs = [(self.history, self.halved), (self.halved, self.history)]
+        turns = [(np.abs(one.twist).max(), np.abs(other.twist).max(), TURNED) for one, other in pairs]
+        paths = [(one.path.max(), other.path.max(), MOVED * one.solid.height) for one, other in pairs]
+        differ = [
+            any(one - other > UNSETTLED * one and one > least for one, other, least in each) for each in (turns, paths)
+        ]
+        return " and ".join(name for name, each in zip(("its turn", "its displacement"), differ, strict=True) if each)
 
     @property
     def outcome(self) -> str:
