@@ -163,7 +163,7 @@ CALLS = {
     "survey": (
         {"structures": [FRAME, WEAK], "motions": RECORD.scaled(1.5)},
         {"structures": [OTHER], "motions": PULSE, "polarity": "-1", "site": SITE, "opening": 1.0, "top": 1,
-         "remedies": "all", "page": "p.html", "map": "m.png", "sheets": "odd", "sheet_format": "docx", "language": "it", "project": "odd",
+         "remedies": "all", "in_space": True, "transverse": PULSE, "page": "p.html", "map": "m.png", "sheets": "odd", "sheet_format": "docx", "language": "it", "project": "odd",
          "out": "o.csv", "plot": "p.svg", "separator": ";", "decimal": ",",
          "place": "odd", "client": "odd", "author": "odd", "logo": "in.svg", "origin": "odd"} | AROUND,
     ),
@@ -256,7 +256,8 @@ IDLE = [
     ("design", {"structure": BLOCK, "vary": "width=0.5m:0.9m", "until": "lambda >= 0.2", "points": 3},
      {"polarity": "-1", "opening": 0.1} | AROUND),
     ("survey", {"structures": [BLOCK, OTHER]},
-     {"polarity": "-1", "opening": 0.1, "remedies": "all", "map": "m.png", "sheets": "odd", "sheet_format": "docx",
+     {"polarity": "-1", "opening": 0.1, "remedies": "all", "in_space": True, "transverse": PULSE, "map": "m.png",
+      "sheets": "odd", "sheet_format": "docx",
       "project": "odd", "place": "odd", "client": "odd", "author": "odd", "logo": "in.svg", "origin": "odd"}),
     ("verify", {"structure": BLOCK, "site": SITE},
      {"polarity": "-1", "opening": 0.1, "state": "SLC", "on_floor": True, "project": "odd", "place": "odd",

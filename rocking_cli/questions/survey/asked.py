@@ -15,12 +15,13 @@ from rocking_cli.ask.groups import (
     Identity,
     InLanguage,
     MaybeUnderMotions,
+    Motion,
     OfJoints,
     WithTable,
     plot_file,
     table_file,
 )
-from rocking_cli.ask.kinds import FOLDER, SITE, WHOLE, output
+from rocking_cli.ask.kinds import FILE, FOLDER, SITE, WHOLE, output
 from rocking_cli.names import MAX_NEIGHBOURS
 
 if TYPE_CHECKING:
@@ -79,6 +80,14 @@ class SurveyAsked(MaybeUnderMotions, OfJoints, Around, InLanguage, Identity, Wit
     remedies: Literal["first", "all"] = option(
         "Remedies of objects of a list that may fall: the first that suffices, or all.", default="first"
     )
+    in_space: bool = option(
+        "Simulate objects of a list in three dimensions too (experimental), with motions along the weaker side.",
+        default=False, typed="3d",
+    )  # fmt: skip
+    transverse: Motion | Sequence[Motion] | None = option(
+        "Component of each motion across it, in three dimensions: a file or a pulse for each, in their order.",
+        FILE, repeat=True,
+    )  # fmt: skip
     top: int = option("Number of structures to show.", WHOLE, default=20, ge=1)
     jobs: int | None = option("Number of processor cores to use.", WHOLE, ge=1, usual="one for each processor")
     in_processes: bool = option(
@@ -106,6 +115,7 @@ class SurveyAsked(MaybeUnderMotions, OfJoints, Around, InLanguage, Identity, Wit
         Idle("without a page or calculation sheets: give {page} or {sheets}",
              lambda asked: asked.sheets is None and asked.page is None, IDENTITY),
         Idle("without ground motions", lambda asked: not asked.ground_motions,
-             ("polarity", "opening", "remedies", *NEIGHBOURS)),
+             ("polarity", "opening", "remedies", "in_space", *NEIGHBOURS)),
+        Idle("without {in_space}", lambda asked: not asked.in_space, ("transverse",)),
         Idle("without neighbours", lambda asked: asked.neighbours == 0, ("remedies", *DEVIATIONS)),
     )  # fmt: skip

@@ -16,6 +16,7 @@ from math import inf, pi
 from typing import Any, NamedTuple
 from unicodedata import combining, normalize
 
+import numpy as np
 from pydantic import ValidationError
 
 from rocking_cli.core import Direction, Mechanism
@@ -27,6 +28,7 @@ from rocking_cli.io.field_problems import of_arguments
 from rocking_cli.io.spreadsheet import Row, Spreadsheet, unit_in
 from rocking_cli.processing.oscillator import Floor, peak_displacement
 from rocking_cli.questions.margin.study import Limits
+from rocking_cli.studies.engines.solid_body import SolidBody
 from rocking_cli.text import cut, one_line
 from rocking_cli.units import UnitError, kind_of, read
 from rocking_cli.verification.code import SiteFile
@@ -403,6 +405,39 @@ class ListedObject:
         turns = ((weight + pull) * self.least_foot / 2 + force * height) / (weight * self.centre)
         shear = area * sizes.get("wax_shear", 0.0) if area else sizes.get("friction", inf) * weight
         return min(turns, (shear + force) / weight)
+
+    def solid(self) -> SolidBody:
+        """Return its body in three dimensions, the weaker plane of the foot along x.
+
+        Raises
+        ------
+        InputError
+            If it stands on another object or carries one, is held, or its depth is not known.
+        """
+        sizes = self.sizes
+        reasons = {
+            "stands on another object": bool(self.on), "carries another object": bool(self.carried),
+            "is held by wax or wires": self.holds_to() > 0, "stands on an isolator": "period" in sizes,
+            "has a neighbour": "gap" in sizes, "has no depth": not self.is_round and not {"width", "depth"} <= {*sizes},
+        }  # fmt: skip
+        if why := [each for each, applies in reasons.items() if applies]:
+            raise InputError(self._problem(f"is not simulated in three dimensions, as it {why[0]}"))
+        friction = sizes.get("friction", MASONRY_FRICTION)
+        how: dict[str, Any] = {"friction": friction, "assumes_friction": "friction" not in sizes}
+        (body, foot), (deep, foot_deep) = sorted(
+            (self.widths(turned=each) for each in (False, True)), key=lambda w: w[1]
+        )
+        inertia = [(across**2 + self.height**2) / 12 for across in (deep, body)]
+        levels = ((0.0, foot, foot_deep), (self.height / 2, body, deep), (self.height, foot, foot_deep))
+        if self.is_round:
+            profile = np.array([width / 2 + 1j * z for z, width, _ in levels])
+            about = (0.75 * body**2 + self.height**2) / 12, body**2 / 8
+            return SolidBody.turned(profile, foot / 2, self.centre, about, **how)
+        points = [[x * w / 2, y * d / 2, z] for z, w, d in levels for x in (-1, 1) for y in (-1, 1)]
+        about_axis = (body**2 + deep**2) / 12
+        return SolidBody(
+            points=np.array(points), level=self.centre, inertia=np.diag([*inertia, about_axis]), **how
+        )  # fmt: skip
 
     def site(self, usual: SiteFile | None) -> SiteFile | None:
         """Return the site of all objects."""

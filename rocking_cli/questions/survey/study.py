@@ -24,6 +24,7 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.io.spreadsheet import Spreadsheet
 from rocking_cli.names import OPENING
 from rocking_cli.questions.margin.study import FACTORS, Limits, limited, margin
+from rocking_cli.questions.survey.in_space import SpaceOutcome, outcomes_in_space
 from rocking_cli.questions.survey.inventory import Inventory, ListedObject
 from rocking_cli.questions.survey.remedies import SAFE_SHARE, Remedy, remedies
 from rocking_cli.short_repr import short_repr
@@ -195,6 +196,10 @@ class Surveyed:
         How strong each of the motions must be to topple it, of objects of a list.
     remedies : sequence of Remedy
         What to do, of objects of a list that may fall: the first that suffices, or all, if requested.
+    space : sequence of SpaceOutcome
+        What it does in three dimensions under each motion, if that was requested.
+    not_in_space : str or None
+        Why it was not simulated there.
     """
 
     row: int
@@ -226,6 +231,8 @@ class Surveyed:
     z: float | None = None
     topples: Sequence[Topples] = ()
     remedies: Sequence[Remedy] = ()
+    space: Sequence[SpaceOutcome] = ()
+    not_in_space: str | None = None
 
     @property
     def caution(self) -> str | None:
@@ -367,6 +374,8 @@ def survey(
     opening: float = OPENING,
     cautions: Callable[[Mechanism], Sequence[str]] = Mechanism.cautions,
     every_remedy: bool = False,
+    in_space: bool = False,
+    transverse: Sequence[GroundMotion] = (),
     threads: int | None = None,
     processes: int | None = None,
     progress: Callable[[int], None] | None = None,
@@ -394,6 +403,10 @@ def survey(
         Returns the cautions on a structure.
     every_remedy : bool
         Whether to try every remedy of an object, and not only up to the first that suffices.
+    in_space : bool
+        Whether to simulate objects of a list in three dimensions too.
+    transverse : sequence of GroundMotion
+        The component across each of the motions there; none without any.
     threads : int, optional
         Number of threads; by default one for each processor.
     processes : int, optional
@@ -415,7 +428,11 @@ def survey(
     samples = len(entries) * len(polarities) * sum(motion.npts for motion in motions)
     if reduced := bounded and samples * around.count > MAX_SAMPLES:
         around = replace(around, count=MAX_SAMPLES // samples)
-    part = partial(_part, entries, Setting(motions, polarities, around, by_code, site, opening, cautions, every_remedy))
+    part = partial(
+        _part,
+        entries,
+        Setting(motions, polarities, around, by_code, site, opening, cautions, every_remedy, in_space, transverse),
+    )
 
     per_chunk = 1 if isinstance(entries, Inventory) else STRUCTURES_PER_CHUNK  # an object takes seconds
 
@@ -425,7 +442,7 @@ def survey(
     if processes is None:
         in_parts(work, len(entries), per_chunk, threads, progress)
     else:
-        for first, done in in_processes(part, len(entries), STRUCTURES_PER_CHUNK, processes):
+        for first, done in in_processes(part, len(entries), per_chunk, processes):
             results[first : first + len(done)] = done
             if progress is not None:
                 progress(len(done))
@@ -451,6 +468,8 @@ class Setting(NamedTuple):
     opening: float
     cautions: Callable[[Mechanism], Sequence[str]]
     every_remedy: bool = False
+    in_space: bool = False
+    transverse: Sequence[GroundMotion] = ()
 
 
 def _part(
@@ -506,8 +525,12 @@ def _part(
             if isinstance(answer, SolverError):
                 rows[k] = FailedEntry(one.row, entries[first + k].line, one.name, answer)
             else:
-                _, topples, advice = objects.get(k, (answer, (), ()))
-                rows[k] = replace(one, under=answer, topples=topples, remedies=advice)
+                rows[k] = replace(one, under=answer)
+                if k in objects:
+                    _, topples, advice, space, why = objects[k]
+                    rows[k] = replace(
+                        one, under=answer, topples=topples, remedies=advice, space=space, not_in_space=why
+                    )
     return rows
 
 
@@ -517,6 +540,8 @@ class _OfObject(NamedTuple):
     answer: SurveyResponse | SolverError
     topples: Sequence[Topples] = ()
     remedies: Sequence[Remedy] = ()
+    space: Sequence[SpaceOutcome] = ()
+    not_in_space: str | None = None
 
 
 def _of_object(item: ListedObject, structure: Structure, setting: Setting) -> _OfObject:
@@ -524,25 +549,40 @@ def _of_object(item: ListedObject, structure: Structure, setting: Setting) -> _O
     around = setting.around
     on_base = setting._replace(motions=item.under(setting.motions), around=replace(around, count=0))
     limits = [item.limits(each) for each in on_base.motions]
+    space, why = list[SpaceOutcome](), None
+    if setting.in_space:
+        sign = setting.polarities[0]
+        along, across = ([each.scaled(sign) for each in some]
+                         for some in (on_base.motions, item.under(setting.transverse)))  # fmt: skip
+        try:
+            space = outcomes_in_space(item, structure, along, across)
+        except InputError as error:
+            why = error.problems[0].message
     try:
         (answer,) = _under([structure], on_base, limits)
         if not around.count or isinstance(answer, SolverError):
-            return _OfObject(answer)
+            return _OfObject(answer, space=space, not_in_space=why)
         conditions = Conditions(structure, ["nonlinear"], setting.polarities, around=around)
         topples = [_topples(conditions, each, limit) for each, limit in zip(on_base.motions, limits, strict=True)]
-        low, high = (fmean(getattr(each.share, key) for each in topples) for key in ("lowest", "highest"))
-        answer = replace(answer, share=NeighbourShare(low, high, around.count))
-        if max(each.share.highest for each in topples) <= SAFE_SHARE:
-            return _OfObject(answer, topples)
-        advice, places = list[Remedy](), range(len(topples))
-        worst_first = sorted(places, key=lambda k: -topples[k].share.highest)
-        for each in remedies(item, [setting.motions[k] for k in worst_first], setting.polarities, around):
-            advice.append(each)
-            if each.suffices and not each.against and not setting.every_remedy:
-                break
+        advice = _remedies(item, topples, setting)
     except SolverError as error:
         return _OfObject(error)
-    return _OfObject(answer, topples, advice)
+    low, high = (fmean(getattr(each.share, key) for each in topples) for key in ("lowest", "highest"))
+    return _OfObject(replace(answer, share=NeighbourShare(low, high, around.count)), topples, advice, space, why)
+
+
+def _remedies(item: ListedObject, topples: Sequence[Topples], setting: Setting) -> list[Remedy]:
+    """Return what to do about an object that may fall: up to the first remedy that suffices, or all."""
+    advice = list[Remedy]()
+    if max(each.share.highest for each in topples) <= SAFE_SHARE:
+        return advice
+    worst_first = sorted(range(len(topples)), key=lambda k: -topples[k].share.highest)
+    motions = [setting.motions[k] for k in worst_first]
+    for each in remedies(item, motions, setting.polarities, setting.around):
+        advice.append(each)
+        if each.suffices and not each.against and not setting.every_remedy:
+            break
+    return advice
 
 
 def _topples(conditions: Conditions, motion: GroundMotion, limits: Limits) -> Topples:

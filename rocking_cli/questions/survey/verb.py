@@ -19,7 +19,9 @@ from rocking_cli.studies.neighbours import Neighbourhood
 from rocking_cli.text import one_line
 
 if TYPE_CHECKING:
+    from rocking_cli.excitation.base import GroundMotion
     from rocking_cli.processing.oscillator import Floor
+    from rocking_cli.processing.reading import Scaled
     from rocking_cli.questions.survey.study import Survey, SurveyEntry
     from rocking_cli.studies.provenance import TitleBlock
     from rocking_cli.verification.code import SiteFile
@@ -67,13 +69,21 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
     language_of(asked.language, where, watch)
     requested = asked.ground_motions
     entries = _entries(asked.structures, requested.reading.floor, watch)
-    if asked.remedies == "all" and not isinstance(entries, Inventory):
-        raise InputError(f"{named('remedies')} all requires a list of objects, by heights, widths and depths")
+    is_list = isinstance(entries, Inventory)
+    for name in () if is_list else ("remedies", "in_space"):
+        if asked.has(name):
+            raise InputError(Problem("requires a list of objects, by heights, widths and depths", field=named(name)))
     first, by_code = _first_site(entries, where), where is not None or bool(getattr(entries, "sites", ()))
     say = texts_in(language := language_of(asked.language, first, watch))
     if asked.sheets is not None and not by_code:
         raise InputError(f"{named('sheets')} requires a site to verify at: give {named('site')}")
-    shaken = [each.motion.scaled(each.factor) for each in requested.gather(0.0, watch)] if requested else []
+    if asked.in_space:
+        from rocking_cli.studies.engines.scene import engine_version
+
+        engine_version()
+    scaled = requested.gather(0.0, watch) if requested else []
+    shaken = [each.motion.scaled(each.factor) for each in scaled]
+    transverse = _transverse(asked, scaled, watch)
     writer = None
     if asked.sheets is not None:
         from rocking_cli.questions.survey.pages import SheetFolder
@@ -85,12 +95,13 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
         from rocking_cli.questions.survey.structure_table import columns_of
 
         columns_of(sheet)
-    processes = _processes(len(entries), asked.jobs, shaken=bool(shaken) or by_code)
+    shared = asked.jobs or os.cpu_count() if asked.in_space else None  # a body in space leaves no time to threads
+    processes = shared or _processes(len(entries), asked.jobs, shaken=bool(shaken) or by_code)
     with watch.progress(len(entries), "structures") as advance:
         result = study(
             entries, shaken, asked.signs, site=where, around=asked.neighbourhood(Neighbourhood.count if shaken else 0),
             bounded=asked.neighbours is None, opening=asked.opening, cautions=cautions_of,
-            every_remedy=asked.remedies == "all", threads=asked.jobs,
+            every_remedy=asked.remedies == "all", in_space=asked.in_space, transverse=transverse, threads=asked.jobs,
             processes=processes if asked.in_processes else None, progress=_timed(advance, len(entries), watch),
         )  # fmt: skip
     _tell_bad(result, "structures" if sheet is None else sheet.file, watch)
@@ -118,6 +129,20 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
         except RockingError as error:
             watch.unwritten(error)
     return answer
+
+
+def _transverse(asked: SurveyAsked, scaled: Sequence[Scaled], watch: Watcher) -> list[GroundMotion]:
+    """Return the components across motions, read and scaled as they are. Raises `InputError` if one lacks another."""
+    from rocking_cli.ask.ground_motions import Motions
+    from rocking_cli.processing.reading_options import PREPARING
+
+    if asked.transverse is None:
+        return []
+    read = Motions.of(asked.transverse, asked.in_order_given(PREPARING)).gather(0.0, watch)
+    if len(read) != len(scaled):
+        what = f"{len(read)} given for {len(scaled)} motions: give one for each, in their order"
+        raise InputError(Problem(what, field=named("transverse")))
+    return [each.motion.scaled(along.factor) for each, along in zip(read, scaled, strict=True)]
 
 
 def _tell_bad(found: Survey, file: str, watch: Watcher) -> None:

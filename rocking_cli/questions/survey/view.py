@@ -14,7 +14,7 @@ from rocking_cli.core.registry import Registry
 from rocking_cli.errors import named
 from rocking_cli.io.spreadsheet import Spreadsheet
 from rocking_cli.io.tables import Columns
-from rocking_cli.names import digits_apart, percent
+from rocking_cli.names import UNKNOWN, digits_apart, percent
 from rocking_cli.questions.survey.study import LEVELS, FailedEntry, Survey, Surveyed
 from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.text import cut, one_line
@@ -157,6 +157,8 @@ OF_LIST: tuple[Column[RankedStructure], ...] = (
         for level in LEVELS
     ),
     Column("topples", _topples),
+    Column("in_space", lambda row: [each._asdict() | {"differs": each.differs} for each in row.found.space] or None),
+    Column("not_in_space", of("found.not_in_space"), text=True),
 )
 PARAMETERS: tuple[Column[RankedStructure], ...] = (
     Column("lambda", of("found.lambda_"), head="lambda", rank=3),
@@ -484,9 +486,30 @@ def _of_supports(found: Survey) -> Iterator[str]:
             f"Caution: {_named(high)}: on an upper floor, which moves more than the ground, whose motion was used. "
             f"Give {named('floor')}, such as T1=0.3,z/H=0,n=3: then each stands on its own storey."
         )
+    yield from _in_space(rows)
     if far := [each for each in rows if each.under is not None and each.under.slip >= FAR_SLIP]:
         most = max(each.under.slip for each in far if each.under is not None)
         yield f"{_named(far)}: slides by up to {number(most, 2)} m: keep that clear on all sides."
+
+
+def _in_space(rows: Sequence[Surveyed]) -> Iterator[str]:
+    """Yield where objects do something else in three dimensions than in the plane, and which were not simulated."""
+    if not any(each.space or each.not_in_space for each in rows):
+        return
+    worse = [each for each in rows if any(one.differs and one.topples_in_space for one in each.space)]
+    better = [each for each in rows if any(one.differs and not one.topples_in_space for one in each.space)]
+    unknown = [each for each in rows if any(one.outcome == UNKNOWN for one in each.space)]
+    yield "In three dimensions (experimental), one history of each object as it is listed, without neighbours:"
+    if worse:
+        yield f"Overturn in space, and not in the plane: {_named(worse)}."
+    if better:
+        yield f"Overturn in the plane, and not in space: {_named(better)}."
+    if unknown:
+        yield f"Unknown in space, as half the time step gives another outcome: {_named(unknown)}."
+    if not (worse or better or unknown):
+        yield "The plane and space give the same outcomes."
+    if left_out := [each for each in rows if each.not_in_space]:
+        yield f"Not simulated in space: {_named(left_out)}; the JSON has the reasons."
 
 
 def _peaks(what: str, peaks: Sequence[float]) -> str:

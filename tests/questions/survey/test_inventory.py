@@ -478,6 +478,43 @@ class TestRemedies:
         assert [each.kind for each in row.remedies] == ["base", "ballast", "wires", "wax", "slide", "isolate"]
 
 
+class TestInSpace:
+    """Objects in three dimensions beside the plane; histories themselves are tested with their engine."""
+
+    PUSH, ACROSS = "sine:0.3g:1s", "sine:0.2g:0.76923s"
+
+    @pytest.fixture(autouse=True)
+    def _engine(self):
+        pytest.importorskip("mujoco", reason="free blocks need MuJoCo")
+
+    def test_a_second_component_topples_what_the_plane_calls_safe(self):
+        text = "No,Name,Height (cm),Diameter (cm),Support\n1,drum,200,50,friction 0.6\n"
+        (row,) = quick(text, self.PUSH, in_space=True, neighbours=0).rows
+        assert [each.outcome for each in row.space] == ["rocks"] and not row.space[0].differs
+        answer = quick(text, self.PUSH, in_space=True, transverse=self.ACROSS, neighbours=0)
+        (row,) = answer.rows
+        assert row.space[0].differs and row.space[0].overturning_time == pytest.approx(1.964, abs=0.02)
+        assert any("Overturn in space, and not in the plane: 1 drum." in str(part) for part in answer.view.parts)
+
+    def test_a_box_lies_with_its_weaker_side_along_x(self):
+        made = item("240,60,18,620,limestone,floor,G2").solid()
+        assert np.ptp(made.points, axis=0) == pytest.approx([0.18, 0.60, 2.40])
+        assert np.diag(made.inertia) == pytest.approx(
+            [(0.6**2 + 2.4**2) / 12, (0.18**2 + 2.4**2) / 12, (0.18**2 + 0.6**2) / 12]
+        )
+
+    @pytest.mark.parametrize("support", ["on 2", '"wires 300 N at 1 m"', "isolator 2 s 10 % 20 cm", "gap 3 cm"])
+    def test_what_is_not_simulated_is_said_by_name(self, support):
+        text = f"{HEAD}1,a,100,30,30,40,oak,{support},A\n2,b,50,60,60,90,oak,floor,A\n"
+        rows = {row.name: row for row in quick(text, self.PUSH, in_space=True, neighbours=0).rows}
+        assert "not simulated in three dimensions, as it" in rows["1 a"].not_in_space
+        assert not rows["1 a"].space
+
+    def test_a_component_for_each_motion(self):
+        with pytest.raises(InputError, match="2 given for 1 motions"):
+            quick(TestRemedies.TEXT, self.PUSH, in_space=True, transverse=[self.ACROSS, self.PUSH])
+
+
 def test_kinds_of_a_list_can_be_named():
     head = "No,Name,Type,Height (cm),Width (cm),Depth (cm)"
     text = f"{head}\n1,x,cylinder,100,30,30\n2,y,vase,60,20,20\n3,z,bookcase,200,90,30\n"
