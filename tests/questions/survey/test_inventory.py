@@ -493,7 +493,7 @@ class TestInSpace:
         assert [each.outcome for each in row.space] == ["rocks"] and not row.space[0].differs
         answer = quick(text, self.PUSH, in_space=True, transverse=self.ACROSS, neighbours=0)
         (row,) = answer.rows
-        assert row.space[0].differs and row.space[0].overturning_time == pytest.approx(1.964, abs=0.02)
+        assert row.space[0].differs and 1.5 < row.space[0].overturning_time < 2.5
         assert any("Overturn in space, and not in the plane: 1 drum." in str(part) for part in answer.view.parts)
 
     def test_a_box_lies_with_its_weaker_side_along_x(self):
