@@ -473,21 +473,22 @@ def _of_peaks(found: Survey) -> Iterator[str]:
 
 
 def _of_supports(found: Survey) -> Iterator[str]:
-    """Yield on what objects of a list stand that is not the ground, and which ones slide far."""
-    of = {each.name: found.items[each.row - 1] for each in found.rows} if found.items and found.motions else {}
-    rows = [each for each in found.rows if each.topples]
-    if moved := [each for each in rows if of[each.name].base != (None, None)]:
+    """Yield on what objects of a list stand that is not the ground, what differs in space, and which slide far."""
+    if not (found.items and found.motions):
+        return
+    rows = [(each, found.items[each.row - 1]) for each in found.rows]
+    if moved := [each for each, item in rows if item.base != (None, None)]:
         peaks = [peak.base_pga for each in moved for peak in each.topples]
-        yield f"{_named(moved)}: on floors or isolators of their own, {_peaks('with a PGA', peaks)}."
-    if high := [
-        each for each in rows if of[each.name].storey and of[each.name].base[0] is None and not found.floor_pga
-    ]:
+        yield f"{_named(moved)}: on floors or isolators of their own" + (
+            f", {_peaks('with a PGA', peaks)}." if peaks else "."
+        )
+    if high := [each for each, item in rows if item.storey and item.base[0] is None and not found.floor_pga]:
         yield (
             f"Caution: {_named(high)}: on an upper floor, which moves more than the ground, whose motion was used. "
             f"Give {named('floor')}, such as T1=0.3,z/H=0,n=3: then each stands on its own storey."
         )
-    yield from _in_space(rows)
-    if far := [each for each in rows if each.under is not None and each.under.slip >= FAR_SLIP]:
+    yield from _in_space(found.rows)
+    if far := [each for each in found.rows if each.under is not None and each.under.slip >= FAR_SLIP]:
         most = max(each.under.slip for each in far if each.under is not None)
         yield f"{_named(far)}: slides by up to {number(most, 2)} m: keep that clear on all sides."
 
