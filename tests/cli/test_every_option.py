@@ -103,7 +103,8 @@ CALLS = {
     "respond": (
         {"structure": WEAK, "motions": STRONG, "neighbours": 2, "opening": 1.0},
         {"structure": BLOCK, "motions": PULSE, "model": "nonlinear", "polarity": "both", "vertical": RECORD,
-         "vertical_dt": 0.1, "vertical_channel": "2", "with_pulse": "sine", "release": 0.2,
+         "vertical_dt": 0.1, "vertical_channel": "2", "with_pulse": "sine", "release": 0.2, "in_space": True,
+         "transverse": "sine:0.2g:0.5s", "transverse_channel": "2", "mesh": "in.obj", "mesh_units": "m",
          "opening": 0.0, "restitution": 0.8, "engine": "auto", "impacts": True, "each_block": True, "title": "odd",
          "animate": "b.html", "plot": "p.svg"} | AROUND | TABLE,
     ),

@@ -16,7 +16,7 @@ from rocking_cli.ask.watcher import Watcher
 from rocking_cli.dynamics.history import History
 from rocking_cli.errors import InputError, Problem, RockingError, named, renamed
 from rocking_cli.excitation.base import GroundMotion
-from rocking_cli.names import OVERTURNS, ROCKS, UNKNOWN
+from rocking_cli.names import OVERTURNS, ROCKS, STILL_ROCKING, UNKNOWN
 from rocking_cli.processing.reading import OF_PAIRS, Scaled
 from rocking_cli.questions.respond.asked import RespondAsked
 from rocking_cli.questions.respond.motion_verbs import with_vertical
@@ -152,8 +152,8 @@ def _view(structure: Structure, response: SpaceResponse) -> View:
     """Show the motion of a body in three dimensions."""
     checked, plane, solid = response.checked, response.plane, response.checked.history.solid
     doing = _in_words(checked.history, checked.outcome, "alpha")
-    doing = f"{doing}: {checked.doubt}" if checked.doubt else doing
-    sentences = [f"In three dimensions (experimental) the body {'is ' * (checked.outcome == UNKNOWN)}{doing}."]
+    doing = {STILL_ROCKING: "is still rocking", UNKNOWN: f"has an unknown outcome: {checked.doubt}"}.get(doing, doing)
+    sentences = [f"In three dimensions (experimental) the body {doing}."]
     if plane is not None:
         side = "" if structure.mechanism.weaker_side() is None else ", about its depth, the weaker side"
         alone = _in_words(plane, plane.words, "phi_cr")
