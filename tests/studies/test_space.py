@@ -16,7 +16,8 @@ from rocking_cli.cli.main import main
 from rocking_cli.names import NO_UPLIFT, OVERTURNS, ROCKS, SLIDES, STILL_ROCKING, UNKNOWN
 from rocking_cli.studies.engines import scene, space
 from rocking_cli.studies.engines.solid_body import SolidBody, solid_of
-from rocking_cli.studies.engines.space import CheckedHistory, follow_in_space, follow_twice
+from rocking_cli.studies.engines.space import follow_in_space, follow_twice
+from rocking_cli.studies.engines.space_history import CheckedHistory, SpaceHistory
 from rocking_cli.testing.mechanism import contract
 from tests.conftest import EXAMPLES
 from tests.following import respond
@@ -68,12 +69,15 @@ def test_a_box_overturns_as_in_the_plane():
     assert plane.fell
 
 
-def test_a_column_under_one_component_and_under_two():
+def test_a_column_under_one_component_and_under_two(monkeypatch):
     alone, both = twice(COLUMN, STRONG), twice(COLUMN, STRONG, ACROSS)
     assert alone.outcome == ROCKS and both.outcome == OVERTURNS
     assert alone.history.peak_ratio == pytest.approx(0.2805, rel=0.005)  # as another model of MuJoCo had it
     assert alone.halved.peak_ratio == pytest.approx(0.281, rel=0.005)
     assert both.history.overturning_time == pytest.approx(both.halved.overturning_time, abs=0.005)
+    monkeypatch.setattr(SolidBody, "fallen", 1.25)
+    falls = follow_in_space(SolidBody.cylinder(0.5, 2.0), pulse(STRONG), pulse(ACROSS))
+    assert np.interp(1.2, falls.tilt, falls.time) == pytest.approx(1.964, abs=0.004)
     plane = respond(rk.Block(width=0.5, height=2.0, section="round"), pulse(STRONG), models=["nonlinear"])
     assert alone.history.peak_ratio == pytest.approx(plane["nonlinear"].peak_ratio, rel=0.005)
     assert alone.history.rolled < 1e-6 < 0.5 < both.history.rolled
@@ -197,9 +201,7 @@ def test_a_tilt_that_oscillates_in_a_plane_is_no_rolling_and_one_that_goes_round
     def history(leans_x, leans_y):
         turned = np.stack([np.ones(400), -0.005 * leans_y, 0.005 * leans_x, np.zeros(400)], axis=1)
         turned /= np.linalg.norm(turned, axis=1)[:, None]
-        return space.SpaceHistory(
-            solid=solid, time=angle, moved=np.zeros((400, 3)), turned=turned, rates=np.zeros((400, 6))
-        )
+        return SpaceHistory(solid=solid, time=angle, moved=np.zeros((400, 3)), turned=turned, rates=np.zeros((400, 6)))
 
     assert history(np.cos(3 * angle), 1e-9 * np.sin(angle)).rolled < 1e-6
     assert history(np.cos(angle), np.sin(angle)).rolled == pytest.approx(2 * pi * 0.5, rel=1e-3)

@@ -23,7 +23,8 @@ from rocking_cli.questions.respond.motion_verbs import with_vertical
 from rocking_cli.structure import Structure
 from rocking_cli.studies.engines import follow
 from rocking_cli.studies.engines.solid_body import SolidBody, common_fields, solid_of
-from rocking_cli.studies.engines.space import CheckedHistory, SpaceHistory, follow_twice
+from rocking_cli.studies.engines.space import follow_twice
+from rocking_cli.studies.engines.space_history import CheckedHistory, SpaceHistory
 from rocking_cli.views.column import Column, data_of, of, rounded, table_across
 from rocking_cli.views.view import Aside, View, heading, number
 
