@@ -207,6 +207,16 @@ def test_a_tilt_that_oscillates_in_a_plane_is_no_rolling_and_one_that_goes_round
     assert history(np.cos(angle), np.sin(angle)).rolled == pytest.approx(2 * pi * 0.5, rel=1e-3)
 
 
+def test_a_history_that_ends_early_has_the_same_outcome_and_peak():
+    solid = SolidBody.box(0.7, 0.9, 2.8)
+    kick = np.concatenate([0.3 * np.sin(np.linspace(0, 2 * pi, 81)), np.zeros(400), 0.6 * np.ones(25), [0.0]])
+    motion = rk.GroundMotion("late", 0.01, kick, unit="g")  # it has tilted least when the motion ends
+    whole, early = (follow_in_space(solid, motion, only_outcome=each) for each in (False, True))
+    n = len(early.time)
+    assert (early.outcome, early.peak_ratio) == (whole.outcome, whole.peak_ratio) and n < len(whole.time)
+    assert whole.tilt[: len(kick)].max() < 0.9 * whole.tilt.max()
+
+
 def test_the_second_history_decides_whether_the_outcome_is_known():
     rocks, falls = twice(COLUMN, STRONG).history, twice(COLUMN, STRONG, ACROSS).history
     weaker = follow_in_space(COLUMN, pulse("sine:0.29g:1s"), only_outcome=True)

@@ -71,8 +71,7 @@ def in_space(structure: Structure, asked: RespondAsked, watch: Watcher) -> Answe
     x, y = chosen.motion.scaled(factor), _transverse(asked, chosen, watch)
     components = (replace(x, vertical=None), None if y is None else y.scaled(factor), x.vertical)
     answer = SpaceResponse(components, follow_twice(solid, *components), _in_the_plane(structure, components[0]))
-    figure = partial(_figure, answer, heading(structure.mechanism))
-    shown = _view(structure, answer)
+    shown, figure = _view(structure, answer), partial(_figure, answer, heading(structure.mechanism))
     answered = Answer("response in three dimensions", answer, shown, partial(_columns, answer), figure)
     write_files(answered, asked, watch)
     return answered
@@ -90,11 +89,10 @@ def _of_mesh(structure: Structure, asked: RespondAsked) -> SolidBody:
     surface, _ = read_drawing(file)
     if not isinstance(surface, MeshSurface):
         raise InputError(Problem("is a drawing, not a mesh", file, field=named("mesh")))
-    options = MeshOptions(units=asked.mesh_units)
     with renamed({"units": "mesh_units"}):
-        body = imported(surface, file, options)
+        body = imported(surface, file, MeshOptions(units=asked.mesh_units))
     points = body.points[np.unique(hull_of(body.points, file)[1])]
-    points[points[:, 2] <= options.level, 2] = 0.0  # its foot, as `rocking import` has it
+    points[points[:, 2] <= body.options.level, 2] = 0.0  # its foot, as `rocking import` has it
     inertia = body.whole.inertia / body.whole.volume
     return SolidBody(points=points, level=body.height, inertia=inertia, **common).checked()
 
@@ -104,7 +102,7 @@ def _transverse(asked: RespondAsked, chosen: Scaled, watch: Watcher) -> GroundMo
     given, motions = asked.transverse, asked.ground_motions
     if given is None or isinstance(given, GroundMotion):
         return given
-    if isinstance(given, str) and (pulse := pulse_in(given)) is not None:
+    if (pulse := pulse_in(given)) is not None:
         return motions.reading.on_floor(pulse.sampled())
     reading = motions.reading if chosen.record is None else chosen.record.reading(motions.reading)
     reading = reading.without("channel", *OF_PAIRS)

@@ -33,7 +33,7 @@ from rocking_cli.studies.engines.solid_body import SolidBody
 from rocking_cli.studies.engines.space_history import ROLLING, CheckedHistory, SpaceHistory
 
 HALVED = 2.0  # factor by which step and softness of the second simulation are smaller
-ROUNDS = 10.0  # in sqrt(size/g): what has not tilted farther for this time after the motion, and cannot overturn, ends
+ROUNDS = 10.0  # in sqrt(size/g), time after the motion from which what cannot overturn has reached its peak
 UPRIGHT = (0.0, 0.0, -1.0)
 DISC = 0.1  # height of the cylinder that is a round foot, over its radius; without effect
 
@@ -77,7 +77,7 @@ def follow_in_space(
     spin : sequence of float
         Angular velocity about its own axes with which it starts [rad/s]; the point that touches is at rest.
     only_outcome : bool
-        Whether to end after the motion as soon as it can tilt no farther, though it still moves.
+        Whether to end after the motion as soon as its energy lets it tilt no farther; later, lets it not overturn.
 
     Raises
     ------
@@ -177,7 +177,9 @@ class _Motion:
             tilts.append(2 * asin(min(hypot(*data.qpos[4:6].tolist()), 1.0)))
             overturned = tilts[-1] > solid.fallen
             if k * sample >= ended and k >= before:
-                at_rest = self._rests(states[-1 - before :]) or (only_outcome and not self._goes_on(tilts))
+                waited = k * sample - ended > ROUNDS * solid.unit_of_time
+                decided = only_outcome and not self._may_reach(solid.alpha if waited else max(tilts))
+                at_rest = decided or self._rests(states[-1 - before :])
         places, turned, rates = np.split(np.array(states), [3, 7], axis=1)
         w, x, y, z = turned.T
         axis = np.stack([2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x**2 + y**2)], axis=1)
@@ -215,24 +217,14 @@ class _Motion:
             ]
         data.efc_aref[:] -= rows
 
-    def _goes_on(self, tilts: Sequence[float]) -> bool:
-        """Return whether it may tilt farther than before: what rolls has energy for it, but does so soon or never."""
-        peak, lately = max(tilts), ceil(ROUNDS * self.solid.unit_of_time / self.sample)
-        return self._may_reach(min(peak if max(tilts[-lately:]) == peak else self.solid.alpha, self.solid.alpha))
-
     def _may_reach(self, tilt: float) -> bool:
-        """Return whether the energy is enough for a tilt."""
+        """Return whether the energy is enough for a tilt; of all directions the weaker side needs least."""
         solid, (velocity, omega) = self.solid, np.split(self.data.qvel, 2)
         moving = velocity @ velocity + omega @ solid.inertia @ omega / solid.size**2
-        # Of all directions the weaker side lifts the centroid least.
-        level = solid.level / cos(solid.alpha) * cos(max(solid.alpha - tilt, 0.0)) / solid.size
+        level = solid.level * cos(max(solid.alpha - tilt, 0.0)) / cos(solid.alpha) / solid.size
         return float(self.data.qpos[2] + moving / 2) > level
 
     def _rests(self, states: Sequence[Reals]) -> bool:
         """Return whether no point of the body moves farther than contacts give way by themselves."""
-        few = states[:: len(states) // 4 + 1]  # they tell of most motions, and are fast
-        for each in (few, states):
-            place, turn = np.split(np.ptp(np.array(each)[:, :7], axis=0), [3])
-            if self.solid.size * (np.linalg.norm(place) + 2 * np.linalg.norm(turn)) > self.least:
-                return False
-        return True
+        place, turn = np.split(np.ptp(np.array(states)[:, :7], axis=0), [3])
+        return bool(self.solid.size * (np.linalg.norm(place) + 2 * np.linalg.norm(turn)) <= self.least)
