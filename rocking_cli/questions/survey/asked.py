@@ -97,8 +97,11 @@ class SurveyAsked(MaybeUnderMotions, OfJoints, Around, InLanguage, Identity, Wit
     )  # fmt: skip
     out: Path | None = table_file("Write all rows in ranked order", ".parquet")
     page: Path | None = option(
-        "Write an HTML page with a plot, a map and all rows in a sortable table.", output(".html")
+        "Write a page with a plot, a map and all rows in a sortable table (.html); of a list of objects also a document "
+        "by rooms, with pictures and remedies (.pdf or .docx, which need an extra package; a browser does for .pdf).",
+        output(".html", ".pdf", ".docx"),
     )
+    labels: Path | None = option("Write a card for each object of a list, to be cut out (.pdf).", output(".pdf"))
     map: Path | None = option(
         "Draw a map of the structures, by the columns longitude and latitude (.png, .svg or .pdf).",
         output(".png", ".svg", ".pdf"),
@@ -119,3 +122,13 @@ class SurveyAsked(MaybeUnderMotions, OfJoints, Around, InLanguage, Identity, Wit
         Idle("without {in_space}", lambda asked: not asked.in_space, ("transverse",)),
         Idle("without neighbours", lambda asked: asked.neighbours == 0, ("remedies", *DEVIATIONS)),
     )  # fmt: skip
+
+    @property
+    def has_document(self) -> bool:
+        """Whether the page is the document on a list of objects."""
+        return self.page is not None and self.page.suffix.lower() != ".html"
+
+    @property
+    def hands_over(self) -> bool:
+        """Whether the document on a list of objects, or their cards, are requested."""
+        return self.has_document or self.labels is not None

@@ -290,7 +290,7 @@ class ListedObject:
             return "block", {**fields, **given, "width": body, "height": self.height}
         return "rigid_body", {
             **fields, **self._of_body(body, 0.0), "left_foot": [-foot / 2, 0.0], "right_foot": [foot / 2, 0.0],
-            "polygon": self._silhouette(body, foot, 0.0),
+            "polygon": self.silhouette(body, foot, 0.0),
         }  # fmt: skip
 
     def _of_body(self, body: float, base: float) -> dict[str, Any]:
@@ -300,7 +300,7 @@ class ListedObject:
         inertia = mass * (across + self.height**2) / 12
         return {"mass": mass, "centroid": [0.0, base + self.centre], "inertia": inertia}
 
-    def _silhouette(self, body: float, foot: float, base: float) -> list[list[float]]:
+    def silhouette(self, body: float, foot: float, base: float) -> list[list[float]]:
         """Return corners from foot to top: widest in the middle if the foot is smaller, on a plinth if it is larger."""
         if foot > body:
             level = base + self.height / 10
@@ -322,7 +322,7 @@ class ListedObject:
             each.weighed()
             body, foot = each.widths(turned=turned)
             if each._has_foot:
-                shape = {"polygon": each._silhouette(body, foot, base), **each._of_body(body, base)}
+                shape = {"polygon": each.silhouette(body, foot, base), **each._of_body(body, base)}
             else:
                 x, top = body / 2, base + each.height
                 shape = {"polygon": [[-x, base], [x, base], [x, top], [-x, top]], "mass": each.mass}

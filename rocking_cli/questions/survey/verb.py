@@ -77,6 +77,10 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
     say = texts_in(language := language_of(asked.language, first, watch))
     if asked.sheets is not None and not by_code:
         raise InputError(f"{named('sheets')} requires a site to verify at: give {named('site')}")
+    if asked.hands_over:
+        from rocking_cli.questions.survey.director import check, write
+
+        check(asked, entries)
     if asked.in_space:
         from rocking_cli.studies.engines.scene import engine_version
 
@@ -117,17 +121,19 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
     files = partial(blocks, result, decimal)
     answer = Answer("survey", result, view(result, asked.top, say), partial(columns, result), figure, files)
     write_files(answer, asked, watch)
-    if asked.page is not None:
+    if asked.page is not None and not asked.has_document:
         source = "structures" if sheet is None else Path(sheet.file).name
         heading = asked.title(asked.origin or "rocking_cli.survey(...)", language)
         _write_page(asked.page, result, source, heading, say, watch)
     if asked.map is not None:
         _write_map(asked.map, result, title(result), say, watch)
-    if writer is not None:
-        try:
+    try:
+        if asked.hands_over:
+            write(asked, result, motions, language, watch)
+        if writer is not None:
             writer.write(result, entries, watch)
-        except RockingError as error:
-            watch.unwritten(error)
+    except RockingError as error:
+        watch.unwritten(error)
     return answer
 
 
