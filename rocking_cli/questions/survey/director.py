@@ -27,7 +27,7 @@ from rocking_cli.views.sheet.language import Language
 
 PACKAGE = "rocking_cli.questions.survey"
 DRAWN_TOGETHER = 8  # objects in a picture
-MAX_URGENT = 8  # objects on the first page
+MAX_URGENT = 12  # objects on the first page
 HIGHEST = 8.0  # cm of a picture on paper
 
 
@@ -84,6 +84,11 @@ class Room(NamedTuple):
         return [sum(each.danger == danger for each in self.objects) for danger in DANGERS]
 
     @property
+    def stacked(self) -> bool:
+        """Whether any of its objects stands on another one."""
+        return any(each.item.on for each in self.objects)
+
+    @property
     def pictures(self) -> Iterator[Drawing]:
         """Pictures of a few objects each, to one scale."""
         parts = [self.objects[k : k + DRAWN_TOGETHER] for k in range(0, len(self.objects), DRAWN_TOGETHER)]
@@ -137,7 +142,7 @@ def document(found: Survey, title: TitleBlock, files: Sequence[File], say: Langu
     about |= {say("Date"): title.date, say("Program"): f"rocking-cli {used['rocking-cli']}"}
     parts = sections(say, PACKAGE, "director", context)
     subtitle = say("What falls, what stands, and what to do")
-    return Sheet(say, heading, subtitle, about, parts, title.logo, author=title.author, running=heading)
+    return Sheet(say, heading, subtitle, about, parts, title.logo, own_pages=["appendix"], author=title.author, running=heading)
 
 
 def _unnamed(room: Room) -> bool:

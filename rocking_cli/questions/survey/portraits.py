@@ -19,17 +19,20 @@ from rocking_cli.text import printable
 from rocking_cli.views.sheet.language import Language
 
 LOOKS: dict[str, dict[str, Any]] = {
-    "falls": {"facecolor": style.REGIONS[f"{names.OVERTURNS} after two or more"], "hatch": "xxxx"},
-    "may fall": {"facecolor": style.REGIONS[f"{names.OVERTURNS} after one impact"], "hatch": "////"},
+    "falls": {"facecolor": style.REGIONS[f"{names.OVERTURNS} after two or more"], "hatch": "xx"},
+    "may fall": {"facecolor": style.REGIONS[f"{names.OVERTURNS} after one impact"], "hatch": "//"},
     "stands": {"facecolor": style.REGIONS[names.ROCKS], "hatch": ""},
 }
 """The look of each class: readers without a cone, and paper without colour, tell them apart."""
 SUPPORT: dict[str, Any] = {"facecolor": style.SHADE, "edgecolor": style.FAINT}
+SHADOW = style.REGIONS[names.UNKNOWN]
 PERSON, SMALLEST_ROOM = 1.7, 0.8  # m: height of a person, and of the highest object beside which one is drawn
 TALLEST, SLOT, GAP = 2.5, 0.74, 0.16  # inches: highest object, least width of an object with its words, between two
+MAX_EXTRA = 0.7  # inches: added to the width of each object if there is room
 A4 = (210.0, 297.0)  # mm
 COLUMNS, ROWS, CARD = 2, 5, (95.0, 55.0)  # cards of a page, and the size of one [mm]
 SCALES = (1, 2, 5, 10, 20, 50, 100, 200, 500)  # of which a card takes the largest drawing that fits
+SIDES = ("height", "diameter", "width", "depth")
 DRAWN = (26.0, 38.0)  # mm: room of a drawing on a card
 MM = 1 / 25.4  # inches
 
@@ -99,15 +102,16 @@ def draw_room(objects: Sequence[SurveyedObject], say: Language, scale: float) ->
         Inches of the picture for a metre.
     """
     highest = max(_top(each.item) for each in objects)
-    below = 0.42
-    figure, axes = _page(style.page_width(), below + scale * max(highest, _measure(highest)) + 0.08)
+    below = 0.36
+    figure, axes = _page(style.page_width(), below + scale * max(highest, _measure(highest)) + 0.06)
     x = _draw_measure(axes, highest, below, scale, say)
+    left = style.page_width() - x - sum(_slot(each, scale) for each in objects)
     for each in objects:
-        slot = _slot(each, scale)
+        slot = _slot(each, scale) + min(left / len(objects), MAX_EXTRA)
         _draw(axes, each, x + slot / 2, below, scale)
         code = _shortened(each.number(say), slot - 0.04, style.TICK, "bold")
-        _write(axes, x + slot / 2, below - 0.16, code, style.TICK, ha="center", fontweight="bold")
-        _write(axes, x + slot / 2, below - 0.31, say(each.danger), style.SMALL, ha="center")
+        _write(axes, x + slot / 2, below - 0.15, code, style.TICK, ha="center", fontweight="bold")
+        _write(axes, x + slot / 2, below - 0.28, say(each.danger), style.SMALL, ha="center")
         x += slot
     axes.plot([0, x], [below, below], color=style.EARTH, linewidth=style.MEDIUM, zorder=2)
     return figure
@@ -124,12 +128,12 @@ def _draw_measure(axes: Axes, highest: float, floor: float, scale: float, say: L
     if highest >= SMALLEST_ROOM:
         body = np.array([[-3, 0], [-3, 34], [-5.5, 34], [-5.5, 60], [-3.5, 62], [3.5, 62], [5.5, 60], [5.5, 34], [3, 34],
                          [3, 0]]) * height / 74  # fmt: skip
-        axes.add_patch(Polygon(body + (0.35, floor), color=style.FAINT, linewidth=0, zorder=3))
-        axes.add_patch(Circle((0.35, floor + height * 68.5 / 74), height * 5.5 / 74, color=style.FAINT, linewidth=0))
+        axes.add_patch(Polygon(body + (0.35, floor), color=SHADOW, linewidth=0, zorder=3))
+        axes.add_patch(Circle((0.35, floor + height * 68.5 / 74), height * 5.5 / 74, color=SHADOW, linewidth=0))
     else:
         axes.plot([0.35, 0.35], [floor, floor + height], color=style.INK, linewidth=2.5, solid_capstyle="butt")
     text = f"{_measure(highest):g} m" if highest >= SMALLEST_ROOM else "10 cm"
-    _write(axes, 0.35, floor - 0.16, say.formula(text), style.SMALL, ha="center", color=style.WORDS[style.STONE])
+    _write(axes, 0.35, floor - 0.15, say.formula(text), style.SMALL, ha="center", color=style.WORDS[style.STONE])
     return SLOT
 
 
@@ -162,15 +166,15 @@ def _draw_card(axes: Axes, one: SurveyedObject, x: float, y: float, say: Languag
     part = next((each for each in SCALES if 1000 * max(_width(item) / DRAWN[0], _top(item) / DRAWN[1]) <= each), 1000)
     _draw(axes, one, x + 4 + DRAWN[0] / 2, y + 10, 1000 / part)
     axes.plot([x + 4, x + 4 + DRAWN[0]], [y + 10] * 2, color=style.EARTH, linewidth=style.MEDIUM)
-    sides = [item.height, *dict.fromkeys(item.widths(turned=turned)[0] for turned in (False, True))]
-    size = " x ".join(say.formula(f"{100 * each:.3g}") for each in sides)
+    size = " x ".join(say.formula(f"{100 * item.sizes[key]:.3g}") for key in SIDES if key in item.sizes)
     _write(axes, x + 4, y + 5.5, _shortened(f"{size} cm", DRAWN[0] * MM, style.SMALL), style.SMALL)
     _write(axes, x + 4, y + 2.5, f"1:{part}", style.SMALL, color=style.WORDS[style.STONE])
     x += DRAWN[0] + 8
     _write(axes, x, y + 44, _shortened(one.number(say), wide * MM, 18, "bold"), 18, fontweight="bold")
     titled = _lines(item.title, wide, style.LABEL, 2)
     _write(axes, x, y + 41.5, titled, style.LABEL, va="top", linespacing=1.2)
-    _write(axes, x, y + 30, _shortened(item.room, wide * MM, style.TICK), style.TICK, color=style.WORDS[style.STONE])
+    room = _shortened(item.room, wide * MM, style.TICK)
+    _write(axes, x, y + 37 - 4.5 * titled.count("\n"), room, style.TICK, va="top", color=style.WORDS[style.STONE])
     axes.add_patch(Rectangle((x, y + 22), 5, 5, edgecolor=style.INK, linewidth=style.THIN, **LOOKS[one.danger]))
     _write(axes, x + 7, y + 22.7, say(one.danger), 12, fontweight="bold")
     _write(axes, x, y + 19.5, _lines(advice(one, say, 1), wide, 7.5, 5), 7.5, va="top", linespacing=1.25)

@@ -84,8 +84,9 @@ def _text_of(remedy: Remedy) -> str:
 
 
 def _of(remedy: Remedy) -> Mapping[str, float]:
+    """Return the numbers of a remedy; a base becomes wider by twice what is printed for a side."""
     numbers = remedy.numbers
-    return {**numbers, "side": numbers["wider"] / 2} if "wider" in numbers else numbers
+    return {"side": numbers["wider"] / 2, "wider": 2 * _whole(50 * numbers["wider"]) / 100} if numbers.get("wider") else numbers
 
 
 def _written(key: str, value: float, say: Language) -> str:
@@ -96,13 +97,21 @@ def _written(key: str, value: float, say: Language) -> str:
         return say.formula(f"{value:.2g}")
     if key in ("force", "pull", "shear"):
         return f"{_up(value / 1000, say)} kN" if value >= 1000 else f"{_up(value, say)} N"
-    return _up(value * {"area": 1e4, "mass": 1.0}.get(key, 100.0), say)
+    if key in ("area", "mass"):
+        return _up(value * (1e4 if key == "area" else 1), say)
+    return say.formula(f"{_whole(100 * value):g}")
+
+
+def _whole(length: float) -> float:
+    """Return a length rounded up to a half below 10, and to a whole one above [cm]."""
+    step = 0.5 if length < 10 else 1.0
+    return step * ceil(length / step - 1e-6)
 
 
 def _up(value: float, say: Language) -> str:
     """Return a number rounded up to two digits."""
     step = 10.0 ** (floor(log10(value)) - 1) if value > 0 else 1.0
-    return say.formula(f"{ceil(value / step - 1e-9) * step:.6g}")
+    return say.formula(f"{ceil(value / step - 1e-6) * step:.6g}")
 
 
 def advice(one: SurveyedObject, say: Language, most: int | None = None) -> str:
@@ -131,11 +140,15 @@ def topples_from(found: Surveyed, level: float, say: Language) -> str:
         (over if factor is None else reached).append(each.pga * (each.tried[1] if factor is None else factor))
         weakest += [each.pga * each.tried[0]] if factor is not None and factor <= each.tried[0] else []
     if not reached:
-        return f"> {say.number(min(over), 2)} g"
-    low, high = (say.number(value, 2) for value in (min(reached), max(*reached, *over, 0.0)))
+        return f"> {_peak(min(over), say)} g"
+    low, high = (_peak(value, say) for value in (min(reached), max(*reached, *over, 0.0)))
     below = say("below {low}", low=low) if min(reached) in weakest else low
     high = f"> {high}" if over else high
     return f"{below} g" if low == high and not over else say("{low} to {high} g", low=below, high=high)
+
+
+def _peak(value: float, say: Language) -> str:
+    return say.formula(f"{value:.2f}" if 0.095 <= value < 1 else f"{value:.2g}")
 
 
 def topples_share(found: Surveyed, say: Language) -> str:

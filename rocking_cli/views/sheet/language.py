@@ -190,7 +190,7 @@ class Language:
 
     def caution(self, key: str, text: str) -> str:
         """Return the caution about a mechanism in this language; the given text if there is no translation."""
-        return self.texts.get(f"caution_{key}", plain(text))
+        return self.texts.get(f"caution_{key}", text if self.is_plain else plain(text))
 
     def recognised(self, family: str, text: str) -> str:
         """Return a text that a mechanism wrote in English, in this language; what is not recognised stays as it is.
