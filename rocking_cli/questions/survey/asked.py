@@ -97,8 +97,8 @@ class SurveyAsked(MaybeUnderMotions, OfJoints, Around, InLanguage, Identity, Wit
     )  # fmt: skip
     out: Path | None = table_file("Write all rows in ranked order", ".parquet")
     page: Path | None = option(
-        "Write a page with a plot, a map and all rows in a sortable table (.html); of a list of objects also a document "
-        "by rooms, with pictures and remedies (.pdf or .docx, which need an extra package; a browser does for .pdf).",
+        "Write a page with a plot, a map and all rows in a sortable table (.html), or of a list of objects a document "
+        "by rooms, with pictures and remedies (.pdf and .docx need an extra package; a browser does for .pdf).",
         output(".html", ".pdf", ".docx"),
     )
     labels: Path | None = option("Write a card for each object of a list, to be cut out (.pdf).", output(".pdf"))

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
-from math import inf
+from math import nan
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -17,7 +18,7 @@ from rocking_cli.processing.reading import Scaled
 from rocking_cli.questions.survey.asked import SurveyAsked
 from rocking_cli.questions.survey.inventory import Inventory
 from rocking_cli.questions.survey.portraits import draw_room, scale_of, write_cards
-from rocking_cli.questions.survey.study import Survey
+from rocking_cli.questions.survey.study import LEVELS, Survey
 from rocking_cli.questions.survey.view import RankedStructure, caution_of
 from rocking_cli.questions.survey.wording import DANGERS, SurveyedObject, advice, objects, printed, reading
 from rocking_cli.questions.verify import sheets
@@ -45,9 +46,7 @@ def check(asked: SurveyAsked, entries: Sequence[Any]) -> None:
         sheets.check_program(asked.page.suffix.lower())
 
 
-def write(
-    asked: SurveyAsked, found: Survey, motions: Sequence[Scaled], language: str, watch: Watcher
-) -> None:
+def write(asked: SurveyAsked, found: Survey, motions: Sequence[Scaled], language: str, watch: Watcher) -> None:
     """Write the document and the cards that are requested.
 
     Raises
@@ -62,8 +61,8 @@ def write(
     if asked.page is not None and asked.has_document:
         title = asked.title(asked.origin or "rocking_cli.survey(...)", language)
         source = [asked.structures] if isinstance(asked.structures, str | Path) else []
-        files = [File(str(each), original(each)) for each in source]
-        files += [file for each in motions if (file := file_of_motion(each)) is not None]
+        files = [File(Path(each).name, original(each)) for each in source]
+        files += [replace(file, name=Path(file.name).name) for file in map(file_of_motion, motions) if file is not None]
         sheets.write(asked.page, document(found, title, files, printed(language)), watch)
     if asked.labels is not None:
         every = sorted(objects(found), key=lambda each: each.item.line)
@@ -142,7 +141,9 @@ def document(found: Survey, title: TitleBlock, files: Sequence[File], say: Langu
     about |= {say("Date"): title.date, say("Program"): f"rocking-cli {used['rocking-cli']}"}
     parts = sections(say, PACKAGE, "director", context)
     subtitle = say("What falls, what stands, and what to do")
-    return Sheet(say, heading, subtitle, about, parts, title.logo, own_pages=["appendix"], author=title.author, running=heading)
+    return Sheet(
+        say, heading, subtitle, about, parts, title.logo, own_pages=["appendix"], author=title.author, running=heading
+    )
 
 
 def _unnamed(room: Room) -> bool:
@@ -160,7 +161,8 @@ def _numbers(some: Sequence[SurveyedObject], say: Language) -> str:
 def _undecided(one: SurveyedObject) -> bool:
     """Return whether its class would be another if no case of unknown outcome fell."""
     lowest, worst = (max(getattr(each.share, key) for each in one.found.topples) for key in ("lowest", "highest"))
-    return lowest <= 0.05 < worst or lowest < 0.5 <= worst
+    few, half = LEVELS
+    return bool(lowest <= few < worst or lowest < half <= worst)
 
 
 def _questions(found: Survey, say: Language) -> Iterator[list[str]]:
@@ -196,6 +198,6 @@ def _symbols(found: Survey, say: Language) -> Iterator[list[str]]:
     """Yield the row of each object in the table of symbols, by rank."""
     for rank, each in enumerate(found.rows, 1):
         one, under = SurveyedObject(found.items[each.row - 1], each), each.under
-        peak = under.peak_ratio if under is not None else inf
+        peak = under.peak_ratio if under is not None else nan
         numbers = [say.number(value, 4) for value in (each.lambda_, each.p, each.phi_cr, each.eta)]
-        yield [str(rank), one.number(say), each.mechanism, *numbers, say.number(peak, 3)]
+        yield [str(rank), one.number(say), each.mechanism, *numbers, say.number(round(peak, 3), 3)]

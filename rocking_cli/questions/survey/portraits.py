@@ -26,8 +26,10 @@ LOOKS: dict[str, dict[str, Any]] = {
 """The look of each class: readers without a cone, and paper without colour, tell them apart."""
 SUPPORT: dict[str, Any] = {"facecolor": style.SHADE, "edgecolor": style.FAINT}
 SHADOW = style.REGIONS[names.UNKNOWN]
-PERSON, SMALLEST_ROOM = 1.7, 0.8  # m: height of a person, and of the highest object beside which one is drawn
-TALLEST, SLOT, GAP = 2.5, 0.74, 0.16  # inches: highest object, least width of an object with its words, between two
+BODY = ((-3, 0), (-3, 34), (-5.5, 34), (-5.5, 60), (-3.5, 62), (3.5, 62), (5.5, 60), (5.5, 34), (3, 34), (3, 0))
+"""Corners of a person of a height of 74, without the head."""
+PERSON, BAR, SMALLEST_ROOM = 1.7, 0.1, 0.8  # m: of a person, of a bar, and of what is smallest beside a person
+TALLEST, SLOT, GAP = 2.2, 0.74, 0.16  # inches: highest object, least width of an object with its words, between two
 MAX_EXTRA = 0.7  # inches: added to the width of each object if there is room
 A4 = (210.0, 297.0)  # mm
 COLUMNS, ROWS, CARD = 2, 5, (95.0, 55.0)  # cards of a page, and the size of one [mm]
@@ -65,21 +67,21 @@ def _page(width: float, height: float, unit: float = 1.0) -> tuple[Figure, Axes]
 
 
 def _write(axes: Axes, x: float, y: float, text: str, points: float, **look: Any) -> None:
-    look = {"color": style.INK, "parse_math": False, "ha": "left", "va": "baseline"} | look
-    axes.text(x, y, printable(text), fontsize=points, **look)
+    usual: dict[str, Any] = {"color": style.INK, "parse_math": False}
+    axes.text(x, y, printable(text), fontsize=points, **usual | look)
 
 
-def _shortened(text: str, width: float, points: float, weight: str = "normal") -> str:
-    """Cut a text, a word too, to a width [inches]."""
+def _shortened(text: str, width: float, points: float, *, keep_end: bool = False, **look: str) -> str:
+    """Cut a text, a word too, to a width [inches], at its end or, of a number, at its beginning."""
     short = printable(" ".join(text.split()))
-    while len(short) > 1 and style.size_of(style.plain(short), points, weight).real > width:
-        short = short[: -2 if short.endswith("…") else -1].rstrip() + "…"
+    while len(short) > 2 and style.size_of(style.plain(short), points, **look).real > width:
+        short = "…" + short.removeprefix("…")[1:] if keep_end else short.removesuffix("…")[:-1].rstrip() + "…"
     return short
 
 
 def scale_of(objects: Sequence[SurveyedObject]) -> float:
     """Return inches of a picture for a metre, so that objects fit side by side."""
-    scale = TALLEST / max(_top(each.item) for each in objects)
+    scale = TALLEST / max(*(_top(each.item) for each in objects), _measure(objects))
     while sum(_slot(each, scale) for each in objects) + SLOT > style.page_width():
         scale *= 0.97
     return scale
@@ -101,15 +103,14 @@ def draw_room(objects: Sequence[SurveyedObject], say: Language, scale: float) ->
     scale : float
         Inches of the picture for a metre.
     """
-    highest = max(_top(each.item) for each in objects)
-    below = 0.36
-    figure, axes = _page(style.page_width(), below + scale * max(highest, _measure(highest)) + 0.06)
-    x = _draw_measure(axes, highest, below, scale, say)
+    highest, below = max(*(_top(each.item) for each in objects), _measure(objects)), 0.36
+    figure, axes = _page(style.page_width(), below + scale * highest + 0.06)
+    x = _draw_measure(axes, _measure(objects), below, scale, say)
     left = style.page_width() - x - sum(_slot(each, scale) for each in objects)
     for each in objects:
         slot = _slot(each, scale) + min(left / len(objects), MAX_EXTRA)
         _draw(axes, each, x + slot / 2, below, scale)
-        code = _shortened(each.number(say), slot - 0.04, style.TICK, "bold")
+        code = _shortened(each.number(say), slot - 0.04, style.TICK, keep_end=True, weight="bold")
         _write(axes, x + slot / 2, below - 0.15, code, style.TICK, ha="center", fontweight="bold")
         _write(axes, x + slot / 2, below - 0.28, say(each.danger), style.SMALL, ha="center")
         x += slot
@@ -117,23 +118,21 @@ def draw_room(objects: Sequence[SurveyedObject], say: Language, scale: float) ->
     return figure
 
 
-def _measure(highest: float) -> float:
+def _measure(objects: Sequence[SurveyedObject]) -> float:
     """Return the height of what shows the scale [m]: a person, or a bar beside small objects."""
-    return PERSON if highest >= SMALLEST_ROOM else 0.1
+    return PERSON if max(max(_top(each.item), _width(each.item)) for each in objects) >= SMALLEST_ROOM else BAR
 
 
-def _draw_measure(axes: Axes, highest: float, floor: float, scale: float, say: Language) -> float:
+def _draw_measure(axes: Axes, measure: float, floor: float, scale: float, say: Language) -> float:
     """Draw a person, or a bar beside small objects, and return where the first object begins."""
-    height = _measure(highest) * scale
-    if highest >= SMALLEST_ROOM:
-        body = np.array([[-3, 0], [-3, 34], [-5.5, 34], [-5.5, 60], [-3.5, 62], [3.5, 62], [5.5, 60], [5.5, 34], [3, 34],
-                         [3, 0]]) * height / 74  # fmt: skip
-        axes.add_patch(Polygon(body + (0.35, floor), color=SHADOW, linewidth=0, zorder=3))
+    height = measure * scale
+    if measure == PERSON:
+        axes.add_patch(Polygon(np.array(BODY) * height / 74 + (0.35, floor), color=SHADOW, linewidth=0, zorder=3))
         axes.add_patch(Circle((0.35, floor + height * 68.5 / 74), height * 5.5 / 74, color=SHADOW, linewidth=0))
     else:
         axes.plot([0.35, 0.35], [floor, floor + height], color=style.INK, linewidth=2.5, solid_capstyle="butt")
-    text = f"{_measure(highest):g} m" if highest >= SMALLEST_ROOM else "10 cm"
-    _write(axes, 0.35, floor - 0.15, say.formula(text), style.SMALL, ha="center", color=style.WORDS[style.STONE])
+    text = say.formula(f"{measure:g} m")
+    _write(axes, 0.35, floor - 0.15, text, style.SMALL, ha="center", color=style.WORDS[style.STONE])
     return SLOT
 
 
@@ -170,7 +169,10 @@ def _draw_card(axes: Axes, one: SurveyedObject, x: float, y: float, say: Languag
     _write(axes, x + 4, y + 5.5, _shortened(f"{size} cm", DRAWN[0] * MM, style.SMALL), style.SMALL)
     _write(axes, x + 4, y + 2.5, f"1:{part}", style.SMALL, color=style.WORDS[style.STONE])
     x += DRAWN[0] + 8
-    _write(axes, x, y + 44, _shortened(one.number(say), wide * MM, 18, "bold"), 18, fontweight="bold")
+    number, points = printable(one.number(say)), 18.0
+    points = max(points * min(1, wide * MM / style.size_of(style.plain(number), points, "bold").real), style.SMALL)
+    number = _shortened(number, wide * MM, points, keep_end=True, weight="bold")
+    _write(axes, x, y + 44, number, points, fontweight="bold")
     titled = _lines(item.title, wide, style.LABEL, 2)
     _write(axes, x, y + 41.5, titled, style.LABEL, va="top", linespacing=1.2)
     room = _shortened(item.room, wide * MM, style.TICK)
@@ -185,4 +187,3 @@ def _lines(text: str, width: float, points: float, most: int) -> str:
     lines = style.folded(style.plain(printable(text)), width * MM, points).replace(r"\$", "$").split("\n")
     lines = [*lines[: most - 1], " ".join(lines[most - 1 :])] if len(lines) > most else lines
     return "\n".join(_shortened(line, width * MM, points) for line in lines)
-

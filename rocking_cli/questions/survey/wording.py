@@ -86,7 +86,8 @@ def _text_of(remedy: Remedy) -> str:
 def _of(remedy: Remedy) -> Mapping[str, float]:
     """Return the numbers of a remedy; a base becomes wider by twice what is printed for a side."""
     numbers = remedy.numbers
-    return {"side": numbers["wider"] / 2, "wider": 2 * _whole(50 * numbers["wider"]) / 100} if numbers.get("wider") else numbers
+    side = _whole(100 * numbers.get("wider", 0.0) / 2) / 100
+    return {"side": side, "wider": 2 * side} if side else numbers
 
 
 def _written(key: str, value: float, say: Language) -> str:
@@ -115,7 +116,7 @@ def _up(value: float, say: Language) -> str:
 
 
 def advice(one: SurveyedObject, say: Language, most: int | None = None) -> str:
-    """Return what to do about an object, the first `most` of what suffices, and what not to do.
+    """Return what to do about an object, the first `most` of what suffices by itself, and what not to do.
 
     Remedies of an object on another one hold if that stays in place.
     """
@@ -124,9 +125,9 @@ def advice(one: SurveyedObject, say: Language, most: int | None = None) -> str:
     helps = helps or [each for each in remedies if not each.against and (each.suffices is None or each.kind == "none")]
     if not helps:
         return say("nothing to do")
-    texts = [in_words(each, say) for each in [*helps, *(each for each in remedies if each.against)]]
-    text = "; ".join(dict.fromkeys(texts))
-    return say("{text}, with {below} fixed", text=text, below=one.item.on) if one.item.on else text
+    text = f"; {say('or')} ".join(in_words(each, say) for each in helps)
+    text = say("{text}, with {below} fixed", text=text, below=one.item.on) if one.item.on else text
+    return "; ".join(dict.fromkeys([text, *(in_words(each, say) for each in remedies if each.against)]))
 
 
 def topples_from(found: Surveyed, level: float, say: Language) -> str:
@@ -148,7 +149,7 @@ def topples_from(found: Surveyed, level: float, say: Language) -> str:
 
 
 def _peak(value: float, say: Language) -> str:
-    return say.formula(f"{value:.2f}" if 0.095 <= value < 1 else f"{value:.2g}")
+    return say.formula(f"{value:.2g}" if value < 0.1 else f"{value:.{1 if value >= 1 else 2}f}")
 
 
 def topples_share(found: Surveyed, say: Language) -> str:
