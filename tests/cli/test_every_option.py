@@ -164,7 +164,7 @@ CALLS = {
     "survey": (
         {"structures": [FRAME, WEAK], "motions": RECORD.scaled(1.5)},
         {"structures": [OTHER], "motions": PULSE, "polarity": "-1", "site": SITE, "opening": 1.0, "top": 1,
-         "remedies": "all", "in_space": True, "transverse": PULSE,
+         "remedies": "all", "in_space": True, "transverse": PULSE, "labels": "l.pdf",
          "page": "p.html", "map": "m.png", "sheets": "odd", "sheet_format": "docx", "language": "it", "project": "odd",
          "out": "o.csv", "plot": "p.svg", "separator": ";", "decimal": ",",
          "place": "odd", "client": "odd", "author": "odd", "logo": "in.svg", "origin": "odd"} | AROUND,

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from math import nan
@@ -67,7 +67,7 @@ def write(asked: SurveyAsked, found: Survey, motions: Sequence[Scaled], language
     if asked.labels is not None:
         every = sorted(objects(found), key=lambda each: each.item.line)
         write_whole(asked.labels, partial(write_cards, objects=every, say=printed(language)))
-        watch.note(f"wrote {asked.labels} ({len(every):,} card{'s' * (len(every) != 1)})")
+        watch.note(f"wrote {asked.labels}")
 
 
 class Room(NamedTuple):
@@ -81,11 +81,6 @@ class Room(NamedTuple):
     def counts(self) -> list[int]:
         """Number of the objects of each class."""
         return [sum(each.danger == danger for each in self.objects) for danger in DANGERS]
-
-    @property
-    def stacked(self) -> bool:
-        """Whether any of its objects stands on another one."""
-        return any(each.item.on for each in self.objects)
 
     @property
     def pictures(self) -> Iterator[Drawing]:
@@ -123,17 +118,23 @@ def document(found: Survey, title: TitleBlock, files: Sequence[File], say: Langu
     used = {name: text for name, text in versions(every[0].item.make()).items() if not name.startswith("mechanism")}
     source = "" if found.sheet is None else Path(found.sheet.file).name
     context: dict[str, Any] = {
-        "found": found, "total": len(every), "counts": [counts[danger] for danger in DANGERS], "pga": _range(found.pga),
-        "floor": _range(found.floor_pga), "rooms": sorted((each for each in rooms if each.objects), key=_unnamed),
+        "found": found, "total": len(every), "counts": [counts[danger] for danger in DANGERS], "used": used,
+        "rooms": sorted((each for each in rooms if each.objects), key=lambda room: not room.name),
         "urgent": [[each.number(say), each.item.title, each.item.room, say(each.danger), advice(each, say, 1)]
                    for each in urgent[:MAX_URGENT]],
-        "of_urgent": len(urgent), "questions": [*_questions(found, say)], "bad": [*_bad(found, say)],
+        "of_urgent": len(urgent), "command": title.command, "files": files,
+        "questions": [[each.code or say("row {line}", line=each.line), each.title, say.recognised("shown", question)]
+                      for each in found.items for question in each.questions],
+        "bad": [[str(each.line), each.name, say.recognised("shown", each.reason)] for each in found.bad],
         "undecided": _numbers([each for each in every if _undecided(each)], say),
         "raised": _numbers([each for each in every if each.item.raised], say),
         "upstairs": _numbers([each for each in every if each.item.storey and each.item.base[0] is None], say),
         "loose": any("friction" not in each.item.sizes for each in every),
-        "symbols": [*_symbols(found, say)], "remarks": [*_remarks(every, say)], "cautions": [*_cautions(every, say)],
-        "files": files, "versions": used, "command": title.command,
+        "symbols": [*_symbols(found, say)],
+        "remarks": _grouped(((each, say.recognised("shown", text)) for each in every for text in each.item.remarks),
+                            say),
+        "cautions": _grouped(((each, text) for each in every
+                              if (text := caution_of(RankedStructure(0, each.found), say))), say),
     }  # fmt: skip
     heading = title.project or say("Objects in earthquakes: {source}", source=source)
     about = {say(key.capitalize()): text for key, text in title.known.items() if key != "project"}
@@ -144,14 +145,6 @@ def document(found: Survey, title: TitleBlock, files: Sequence[File], say: Langu
     return Sheet(
         say, heading, subtitle, about, parts, title.logo, own_pages=["appendix"], author=title.author, running=heading
     )
-
-
-def _unnamed(room: Room) -> bool:
-    return not room.name
-
-
-def _range(values: Sequence[float]) -> tuple[float, float]:
-    return min(values, default=0.0), max(values, default=0.0)
 
 
 def _numbers(some: Sequence[SurveyedObject], say: Language) -> str:
@@ -165,33 +158,12 @@ def _undecided(one: SurveyedObject) -> bool:
     return bool(lowest <= few < worst or lowest < half <= worst)
 
 
-def _questions(found: Survey, say: Language) -> Iterator[list[str]]:
-    """Yield number, object and a question on its row."""
-    for each in found.items:
-        for question in each.questions:
-            number = each.code or say("row {line}", line=each.line)
-            yield [number, each.title, say.recognised("shown", question)]
-
-
-def _bad(found: Survey, say: Language) -> Iterator[list[str]]:
-    """Yield line, name and reason of each row that could not be used."""
-    for each in found.bad:
-        yield [str(each.line), each.name, say.recognised("shown", each.reason)]
-
-
-def _remarks(every: Sequence[SurveyedObject], say: Language) -> Iterator[list[str]]:
-    """Yield each remark on how rows were read, with the numbers of the objects."""
-    texts = dict.fromkeys(text for each in every for text in each.item.remarks)
-    for text in texts:
-        yield [say.recognised("shown", text), _numbers([each for each in every if text in each.item.remarks], say)]
-
-
-def _cautions(every: Sequence[SurveyedObject], say: Language) -> Iterator[list[str]]:
-    """Yield each caution on results, with the numbers of the objects."""
-    texts = [caution_of(RankedStructure(0, each.found), say) or "" for each in every]
-    for text in dict.fromkeys(filter(None, texts)):
-        having = [each for each, caution in zip(every, texts, strict=True) if caution == text]
-        yield [text, _numbers(having, say)]
+def _grouped(texts: Iterable[tuple[SurveyedObject, str]], say: Language) -> list[list[str]]:
+    """Return each text once, with the numbers of the objects that have it."""
+    having = defaultdict[str, list[SurveyedObject]](list)
+    for each, text in texts:
+        having[text].append(each)
+    return [[text, _numbers(some, say)] for text, some in having.items()]
 
 
 def _symbols(found: Survey, say: Language) -> Iterator[list[str]]:

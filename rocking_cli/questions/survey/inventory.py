@@ -803,8 +803,8 @@ class _Reading:
         density = sizes["mass"] / (base * sizes["height"])
         if density > most and len(across) + ("diameter" in sizes) > 1:
             of = f"solid {self.bare.material}" if materials else "the heaviest metal"
-            heaviest = most * base * sizes["height"]
-            yield f"it weighs {sizes['mass']:g} kg, but {of} of its sides {heaviest:.3g} kg at most: are units right?"
+            heaviest = float(f"{most * base * sizes['height']:.3g}")
+            yield f"it weighs {sizes['mass']:g} kg, but {of} of its sides {heaviest:g} kg at most: are units right?"
         elif materials and all(brittle for _, brittle, _ in materials) and density < LIGHTEST * most:
             yield f"it weighs {sizes['mass']:g} kg, {density / most:.1%} of a solid of {self.bare.material}: check it"
 

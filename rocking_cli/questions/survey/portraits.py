@@ -170,7 +170,7 @@ def _draw_card(axes: Axes, one: SurveyedObject, x: float, y: float, say: Languag
     _write(axes, x + 4, y + 2.5, f"1:{part}", style.SMALL, color=style.WORDS[style.STONE])
     x += DRAWN[0] + 8
     number, points = printable(one.number(say)), 18.0
-    points = max(points * min(1, wide * MM / style.size_of(style.plain(number), points, "bold").real), style.SMALL)
+    points = max(points * min(1, 0.97 * wide * MM / style.size_of(style.plain(number), points, "bold").real), style.SMALL)
     number = _shortened(number, wide * MM, points, keep_end=True, weight="bold")
     _write(axes, x, y + 44, number, points, fontweight="bold")
     titled = _lines(item.title, wide, style.LABEL, 2)
