@@ -35,6 +35,7 @@ A4 = (210.0, 297.0)  # mm
 COLUMNS, ROWS, CARD = 2, 5, (95.0, 55.0)  # cards of a page, and the size of one [mm]
 SCALES = (1, 2, 5, 10, 20, 50, 100, 200, 500)  # of which a card takes the largest drawing that fits
 SIDES = ("height", "diameter", "width", "depth")
+CODE = 18.0  # points of the number on a card
 DRAWN = (26.0, 38.0)  # mm: room of a drawing on a card
 MM = 1 / 25.4  # inches
 
@@ -169,8 +170,9 @@ def _draw_card(axes: Axes, one: SurveyedObject, x: float, y: float, say: Languag
     _write(axes, x + 4, y + 5.5, _shortened(f"{size} cm", DRAWN[0] * MM, style.SMALL), style.SMALL)
     _write(axes, x + 4, y + 2.5, f"1:{part}", style.SMALL, color=style.WORDS[style.STONE])
     x += DRAWN[0] + 8
-    number, points = printable(one.number(say)), 18.0
-    points = max(points * min(1, 0.97 * wide * MM / style.size_of(style.plain(number), points, "bold").real), style.SMALL)
+    number = printable(one.number(say))
+    length = max(style.size_of(style.plain(number), CODE, "bold").real, 0.01) / MM  # of large type
+    points = max(CODE * min(1, 0.97 * wide / length), style.SMALL)
     number = _shortened(number, wide * MM, points, keep_end=True, weight="bold")
     _write(axes, x, y + 44, number, points, fontweight="bold")
     titled = _lines(item.title, wide, style.LABEL, 2)
