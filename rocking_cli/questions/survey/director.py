@@ -70,7 +70,7 @@ def write(asked: SurveyAsked, found: Survey, motions: Sequence[Scaled], language
         watch.note(f"wrote {asked.labels}")
 
 
-class Room(NamedTuple):
+class RoomOfList(NamedTuple):
     """A room with its objects, the worst first."""
 
     name: str
@@ -112,7 +112,7 @@ def document(found: Survey, title: TitleBlock, files: Sequence[File], say: Langu
     """
     every = objects(found)
     names = dict.fromkeys(each.room for each in found.items)
-    rooms = [Room(name, [each for each in every if each.item.room == name], say) for name in names]
+    rooms = [RoomOfList(name, [each for each in every if each.item.room == name], say) for name in names]
     urgent = [each for each in every if each.danger != "stands"]
     counts = Counter(each.danger for each in every)
     used = {name: text for name, text in versions(every[0].item.make()).items() if not name.startswith("mechanism")}

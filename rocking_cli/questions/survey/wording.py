@@ -123,7 +123,7 @@ def advice(one: SurveyedObject, say: Language, most: int | None = None) -> str:
     remedies = one.found.remedies
     helps = [each for each in remedies if each.suffices and not each.against][:most]
     helps = helps or [each for each in remedies if not each.against and (each.suffices is None or each.kind == "none")]
-    if not helps:
+    if not remedies:
         return say("nothing to do")
     text = f"; {say('or')} ".join(in_words(each, say) for each in helps)
     text = say("{text}, with {below} fixed", text=text, below=one.item.on) if one.item.on else text
