@@ -128,7 +128,10 @@ def document(found: Survey, title: TitleBlock, files: Sequence[File], say: Langu
         "bad": [[str(each.line), each.name, say.recognised("shown", each.reason)] for each in found.bad],
         "undecided": _numbers([each for each in every if _undecided(each)], say),
         "raised": _numbers([each for each in every if each.item.raised], say),
-        "upstairs": _numbers([each for each in every if each.item.storey and each.item.base[0] is None], say),
+        "upstairs": _numbers([each for each in every if each.item.storey and each.item.base[0] is None
+                              and not found.floor_pga], say),
+        "in_space": _numbers([each for each in every if each.danger != "falls"
+                              and any(one.differs and one.topples_in_space for one in each.found.space)], say),
         "loose": any("friction" not in each.item.sizes for each in every),
         "symbols": [*_symbols(found, say)],
         "remarks": _grouped(((each, say.recognised("shown", text)) for each in every for text in each.item.remarks),

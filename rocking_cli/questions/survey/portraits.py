@@ -13,7 +13,7 @@ from matplotlib.patches import Circle, Polygon, Rectangle
 
 from rocking_cli import names
 from rocking_cli.plotting import style
-from rocking_cli.questions.survey.inventory import Item
+from rocking_cli.questions.survey.inventory import ListedObject
 from rocking_cli.questions.survey.wording import SurveyedObject, advice
 from rocking_cli.text import printable
 from rocking_cli.views.sheet.language import Language
@@ -40,11 +40,11 @@ DRAWN = (26.0, 38.0)  # mm: room of a drawing on a card
 MM = 1 / 25.4  # inches
 
 
-def _width(item: Item) -> float:
+def _width(item: ListedObject) -> float:
     return max(max(each.widths()) for each in item.chain)
 
 
-def _top(item: Item) -> float:
+def _top(item: ListedObject) -> float:
     return sum(each.height for each in item.chain)
 
 

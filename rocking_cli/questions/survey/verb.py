@@ -129,7 +129,7 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
         _write_map(asked.map, result, title(result), say, watch)
     try:
         if asked.hands_over:
-            write(asked, result, motions, language, watch)
+            write(asked, result, scaled, language, watch)
         if writer is not None:
             writer.write(result, entries, watch)
     except RockingError as error:

@@ -6,19 +6,20 @@ from collections.abc import Mapping
 from math import ceil, floor, log10
 from typing import NamedTuple
 
-from rocking_cli.questions.survey.inventory import Item
+from rocking_cli.questions.survey.inventory import ListedObject
 from rocking_cli.questions.survey.remedies import Remedy
 from rocking_cli.questions.survey.study import LEVELS, Survey, Surveyed
 from rocking_cli.views.sheet.language import Language, texts_of
 
 DANGERS = ("falls", "may fall", "stands")
 """The classes of `Surveyed.danger`, the worst first; each is a text too."""
+MIN_TOLD_SLIP = 0.01  # m
 
 
 class SurveyedObject(NamedTuple):
     """An object of a list with its results."""
 
-    item: Item
+    item: ListedObject
     found: Surveyed
 
     @property
@@ -123,8 +124,10 @@ def advice(one: SurveyedObject, say: Language, most: int | None = None) -> str:
     remedies = one.found.remedies
     helps = [each for each in remedies if each.suffices and not each.against][:most]
     helps = helps or [each for each in remedies if not each.against and (each.suffices is None or each.kind == "none")]
+    slip = one.found.under.slip if one.found.under is not None else 0.0
     if not remedies:
-        return say("nothing to do")
+        slides = say("it slides: keep {slip} cm free all around", slip=say.formula(f"{_whole(100 * slip):g}"))
+        return slides if slip >= MIN_TOLD_SLIP else say("nothing to do")
     text = f"; {say('or')} ".join(in_words(each, say) for each in helps)
     text = say("{text}, with {below} fixed", text=text, below=one.item.on) if one.item.on else text
     return "; ".join(dict.fromkeys([text, *(in_words(each, say) for each in remedies if each.against)]))

@@ -240,10 +240,17 @@ class TestWords:
         wires = Remedy("wires", True, {"force": 1.0, "height": 1.0}, against=True)
         wax, nothing = Remedy("wax", None, {"pull": 1.0, "shear": 1.0}), Remedy("none", False)
 
-        def of(*remedies, on="", most=None):
-            return advice(SurveyedObject(replace(one.item, on=on), replace(one.found, remedies=remedies)), say, most)
+        def of(*remedies, on="", most=None, slip=0.0):
+            return advice(
+                SurveyedObject(
+                    replace(one.item, on=on),
+                    replace(one.found, remedies=remedies, under=replace(one.found.under, slip=slip)),
+                ),
+                say,
+                most,
+            )
 
-        assert of() == "nothing to do"
+        assert of(slip=0.0) == "nothing to do" and of(slip=0.111) == "it slides: keep 12 cm free all around"
         assert of(base, slide, most=1) == "a base that is 10 cm wider, 5 cm on each side"
         assert "; or let it slide" in of(base, slide)
         assert of(wires, base).endswith("each side; do not tie it or stick it down: slender and brittle, it may crack")
@@ -253,7 +260,7 @@ class TestWords:
 
     def test_bounds_of_what_topples_are_marked(self, collection):
         def of(*factors, pga=1.0):
-            topples = [Topples(str(k), pga, 1.0, {0.05: each}, (0.2, 5.0), NeighbourShare(0.1, 0.1 * k, 9))
+            topples = [Topples(str(k), pga, 1.0, {0.05: each}, (0.2, 5.0), NeighbourShare(0.1, 0.1 * k, 9), pga)
                        for k, each in enumerate(factors, 1)]  # fmt: skip
             return replace(collection.rows[0], topples=topples)
 
