@@ -24,7 +24,7 @@ from rocking_cli.questions.survey.wording import DANGERS, SurveyedObject, advice
 from rocking_cli.questions.verify import sheets
 from rocking_cli.studies.provenance import File, TitleBlock, file_of_motion, versions
 from rocking_cli.views.sheet.document import Drawing, Sheet, sections
-from rocking_cli.views.sheet.language import Language
+from rocking_cli.views.sheet.language import ENGLISH, Language
 
 PACKAGE = "rocking_cli.questions.survey"
 DRAWN_TOGETHER = 8  # objects in a picture
@@ -123,8 +123,7 @@ def document(found: Survey, title: TitleBlock, files: Sequence[File], say: Langu
         "urgent": [[each.number(say), each.item.title, each.item.room, say(each.danger), advice(each, say, 1)]
                    for each in urgent[:MAX_URGENT]],
         "of_urgent": len(urgent), "command": title.command, "files": files,
-        "questions": [[each.code or say("row {line}", line=each.line), each.title, say.recognised("shown", question)]
-                      for each in found.items for question in each.questions],
+        "questions": [*_questions(found, say)],
         "bad": [[str(each.line), each.name, say.recognised("shown", each.reason)] for each in found.bad],
         "undecided": _numbers([each for each in every if _undecided(each)], say),
         "raised": _numbers([each for each in every if each.item.raised], say),
@@ -159,6 +158,17 @@ def _undecided(one: SurveyedObject) -> bool:
     lowest, worst = (max(getattr(each.share, key) for each in one.found.topples) for key in ("lowest", "highest"))
     few, half = LEVELS
     return bool(lowest <= few < worst or lowest < half <= worst)
+
+
+def _questions(found: Survey, say: Language) -> Iterator[list[str]]:
+    """Yield number, object and question of what looks like a mistake; other doubts in English, or their fields."""
+    doubts = {each.row: each.doubt for each in found.rows if each.doubt is not None}
+    for row, each in enumerate(found.items, 1):
+        texts = [say.recognised("shown", question) for question in each.questions]
+        if doubt := doubts.get(row, "").removeprefix("; ".join(each.questions)).removeprefix("; "):
+            fields = ", ".join(one.partition(" is ")[0].partition(" has ")[0] for one in doubt.split("; "))
+            texts += [doubt if say.key == ENGLISH.key else say("Unusual or missing: {fields}.", fields=fields)]
+        yield from ([each.code or say("row {line}", line=each.line), each.title, text] for text in texts)
 
 
 def _grouped(texts: Iterable[tuple[SurveyedObject, str]], say: Language) -> list[list[str]]:

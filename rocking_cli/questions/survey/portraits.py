@@ -28,7 +28,7 @@ SUPPORT: dict[str, Any] = {"facecolor": style.SHADE, "edgecolor": style.FAINT}
 SHADOW = style.REGIONS[names.UNKNOWN]
 BODY = ((-3, 0), (-3, 34), (-5.5, 34), (-5.5, 60), (-3.5, 62), (3.5, 62), (5.5, 60), (5.5, 34), (3, 34), (3, 0))
 """Corners of a person of a height of 74, without the head."""
-PERSON, BAR, SMALLEST_ROOM = 1.7, 0.1, 0.8  # m: of a person, of a bar, and of what is smallest beside a person
+MEASURES = (1.7, 0.1, 0.01)  # m: heights of a person, and of bars beside objects that are much smaller
 TALLEST, SLOT, GAP = 2.2, 0.74, 0.16  # inches: highest object, least width of an object with its words, between two
 MAX_EXTRA = 0.7  # inches: added to the width of each object if there is room
 A4 = (210.0, 297.0)  # mm
@@ -121,13 +121,14 @@ def draw_room(objects: Sequence[SurveyedObject], say: Language, scale: float) ->
 
 def _measure(objects: Sequence[SurveyedObject]) -> float:
     """Return the height of what shows the scale [m]: a person, or a bar beside small objects."""
-    return PERSON if max(max(_top(each.item), _width(each.item)) for each in objects) >= SMALLEST_ROOM else BAR
+    largest = max(max(_top(each.item), _width(each.item)) for each in objects)
+    return next((each for each in MEASURES if largest >= 0.5 * each), MEASURES[-1])
 
 
 def _draw_measure(axes: Axes, measure: float, floor: float, scale: float, say: Language) -> float:
     """Draw a person, or a bar beside small objects, and return where the first object begins."""
     height = measure * scale
-    if measure == PERSON:
+    if measure == MEASURES[0]:
         axes.add_patch(Polygon(np.array(BODY) * height / 74 + (0.35, floor), color=SHADOW, linewidth=0, zorder=3))
         axes.add_patch(Circle((0.35, floor + height * 68.5 / 74), height * 5.5 / 74, color=SHADOW, linewidth=0))
     else:

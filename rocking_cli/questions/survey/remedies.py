@@ -167,7 +167,9 @@ def _wires(trial: _Trial) -> Remedy | None:
         return None
     height = item.sizes.get("wire_height", WIRE_HEIGHT * item.height)
     turning = trial.strong * item.centre - item.least_foot / 2
-    force = max(item.mass * STANDARD_GRAVITY * turning / height, 0.0)
+    if turning <= 0:  # it falls without lifting, such as over an edge or with its isolator
+        return None
+    force = item.mass * STANDARD_GRAVITY * turning / height
     return Remedy("wires", suffices=True, numbers={"force": force, "height": height}, against=_bends(item))
 
 

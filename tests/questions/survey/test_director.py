@@ -131,6 +131,12 @@ class TestDocument:
         assert "could not be used: 1" in said and "Questions on the list: 1" in said
         assert "One record is one sample" in said and "0.55 g" in said and "20 cases" in said
 
+    def test_doubts_about_sizes_are_questions_too(self, collection):
+        doubtful = replace(collection, rows=[replace(collection.rows[0], doubt="height is 0.005 m: did you mean 5 m?")])
+        rows, italian = (tables(parts_of(document(doubtful, key))["questions"])[0].rows for key in ("en", "it"))
+        assert rows[0][2] == "height is 0.005 m: did you mean 5 m?" and len(rows) == 2
+        assert italian[0][2] == "Insolito o mancante: height."
+
     @pytest.mark.parametrize("key", ["en", "it"])
     def test_symbols_are_in_the_appendix_alone(self, collection, key):
         sheet = document(collection, key)
@@ -160,14 +166,15 @@ class TestDocument:
             "7,Slab,80,,,,,,floor,,", "8,Slab,80,30,30,,,,on 99,,", '9,Slab,80,30,30,,,,"wax 20 cm2",,',
             '10,Slab,80,30,30,,9,,"wax 20 cm2",,', '11,Slab,80,30,30,,9,,"isolator 2 s",,',
             "12,Slab,80,30,30,,,,on 13,,",
-            "13,Slab,80,30,30,,,,floor,,",
+            "13,Slab,80,30,30,,5,,floor,,", "14,Lid,30,90,90,,,,floor,,", '15,Slab,80,30,30,,5,,"on 13, gap 5 cm",,',
+            '16,Slab,80,30,30,,,,"floor, edge 5 cm",,',
         ]  # fmt: skip
         file = tmp_path / "list.csv"
         file.write_text(head + "\n".join(rows) + "\n", encoding="utf-8")
         inventory, say = table_of(file, None), printed("it")
         assert isinstance(inventory, Inventory)
         texts_ = {text for each in inventory.items for text in (*each.remarks, *each.questions)}
-        assert len(texts_) >= 12
+        assert len(texts_) >= 14
         bad = study(inventory).bad
         assert len(bad) == 9
         english = english_words(("rocking_cli.questions.survey",)) - {"slab", "many", "marble", "height", "width"}
