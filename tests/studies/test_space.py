@@ -209,7 +209,7 @@ def test_a_tilt_that_oscillates_in_a_plane_is_no_rolling_and_one_that_goes_round
 
 def test_a_history_that_ends_early_has_the_same_outcome_and_peak():
     solid = SolidBody.box(0.7, 0.9, 2.8)
-    kick = np.concatenate([0.3 * np.sin(np.linspace(0, 2 * pi, 81)), np.zeros(400), 0.6 * np.ones(25), [0.0]])
+    kick = np.concatenate([0.3 * np.sin(np.linspace(0, 2 * pi, 81)), np.zeros(400), 0.5 * np.ones(20), [0.0]])
     motion = rk.GroundMotion("late", 0.01, kick, unit="g")  # it has tilted least when the motion ends
     whole, early = (follow_in_space(solid, motion, only_outcome=each) for each in (False, True))
     n = len(early.time)
