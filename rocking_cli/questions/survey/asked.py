@@ -85,7 +85,8 @@ class SurveyAsked(MaybeUnderMotions, OfJoints, Around, InLanguage, Identity, Wit
         default=False, typed="3d",
     )  # fmt: skip
     transverse: Motion | Sequence[Motion] | None = option(
-        "Component of each motion across it, in three dimensions: a file or a pulse for each, in their order.",
+        "Component of each motion across it, in three dimensions: a file or a pulse for each, in their order. "
+        "Repeatable.",
         FILE, repeat=True,
     )  # fmt: skip
     top: int = option("Number of structures to show.", WHOLE, default=20, ge=1)
@@ -112,7 +113,9 @@ class SurveyAsked(MaybeUnderMotions, OfJoints, Around, InLanguage, Identity, Wit
     sheet_format: Literal["html", "docx", "pdf"] = option(
         "Format of the sheets (docx and pdf need an extra package; a browser does for pdf).", default="html"
     )
-    plot: Path | None = plot_file("Plot the uplift acceleration against the frequency parameter")
+    plot: Path | None = plot_file(
+        "Plot the uplift acceleration against the frequency parameter, or draw the first objects of a list to scale"
+    )
     idle = (
         Idle("without calculation sheets: give {sheets}", lambda asked: asked.sheets is None, ("sheet_format",)),
         Idle("without a page or calculation sheets: give {page} or {sheets}",

@@ -17,7 +17,7 @@ from rocking_cli.io.files import write_whole
 from rocking_cli.processing.reading import Scaled
 from rocking_cli.questions.survey.asked import SurveyAsked
 from rocking_cli.questions.survey.inventory import Inventory
-from rocking_cli.questions.survey.portraits import draw_room, scale_of, write_cards
+from rocking_cli.questions.survey.portraits import DRAWN_TOGETHER, draw_room, scale_of, write_cards
 from rocking_cli.questions.survey.study import LEVELS, Survey
 from rocking_cli.questions.survey.view import RankedStructure, caution_of
 from rocking_cli.questions.survey.wording import DANGERS, SurveyedObject, advice, objects, printed, reading
@@ -27,7 +27,6 @@ from rocking_cli.views.sheet.document import Drawing, Sheet, sections
 from rocking_cli.views.sheet.language import ENGLISH, Language
 
 PACKAGE = "rocking_cli.questions.survey"
-DRAWN_TOGETHER = 8  # objects in a picture
 MAX_URGENT = 12  # objects on the first page
 HIGHEST = 8.0  # cm of a picture on paper
 

@@ -14,7 +14,8 @@ from matplotlib.patches import Circle, Polygon, Rectangle
 from rocking_cli import names
 from rocking_cli.plotting import style
 from rocking_cli.questions.survey.inventory import ListedObject
-from rocking_cli.questions.survey.wording import SurveyedObject, advice
+from rocking_cli.questions.survey.study import Survey
+from rocking_cli.questions.survey.wording import SurveyedObject, advice, objects
 from rocking_cli.text import printable
 from rocking_cli.views.sheet.language import Language
 
@@ -25,6 +26,7 @@ LOOKS: dict[str, dict[str, Any]] = {
 }
 """The look of each class: readers without a cone, and paper without colour, tell them apart."""
 SUPPORT: dict[str, Any] = {"facecolor": style.SHADE, "edgecolor": style.FAINT}
+DRAWN_TOGETHER = 8  # objects in a picture
 SHADOW = style.REGIONS[names.UNKNOWN]
 BODY = ((-3, 0), (-3, 34), (-5.5, 34), (-5.5, 60), (-3.5, 62), (3.5, 62), (5.5, 60), (5.5, 34), (3, 34), (3, 0))
 """Corners of a person of a height of 74, without the head."""
@@ -92,24 +94,30 @@ def _slot(one: SurveyedObject, scale: float) -> float:
     return max(_width(one.item) * scale + GAP, SLOT)
 
 
-def draw_room(objects: Sequence[SurveyedObject], say: Language, scale: float) -> Figure:
+def draw_first(found: Survey, say: Language) -> Figure:
+    """Draw the first objects of a list, the worst class first."""
+    some = objects(found)[:DRAWN_TOGETHER]
+    return draw_room(some, say, scale_of(some))
+
+
+def draw_room(some: Sequence[SurveyedObject], say: Language, scale: float) -> Figure:
     """Draw objects side by side to one scale, each with its number and the word of its class, beside a person.
 
     Parameters
     ----------
-    objects : sequence of SurveyedObject
+    some : sequence of SurveyedObject
         The objects, from left to right.
     say : Language
         The language.
     scale : float
         Inches of the picture for a metre.
     """
-    highest, below = max(*(_top(each.item) for each in objects), _measure(objects)), 0.36
+    highest, below = max(*(_top(each.item) for each in some), _measure(some)), 0.36
     figure, axes = _page(style.page_width(), below + scale * highest + 0.06)
-    x = _draw_measure(axes, _measure(objects), below, scale, say)
-    left = style.page_width() - x - sum(_slot(each, scale) for each in objects)
-    for each in objects:
-        slot = _slot(each, scale) + min(left / len(objects), MAX_EXTRA)
+    x = _draw_measure(axes, _measure(some), below, scale, say)
+    left = style.page_width() - x - sum(_slot(each, scale) for each in some)
+    for each in some:
+        slot = _slot(each, scale) + min(left / len(some), MAX_EXTRA)
         _draw(axes, each, x + slot / 2, below, scale)
         code = _shortened(each.number(say), slot - 0.04, style.TICK, keep_end=True, weight="bold")
         _write(axes, x + slot / 2, below - 0.15, code, style.TICK, ha="center", fontweight="bold")

@@ -22,7 +22,7 @@ from rocking_cli.studies.neighbours import Conditions, Neighbourhood, simulate_n
 SAFE_SHARE = 0.05  # of the neighbours, which may overturn all the same
 QUANTILE = NormalDist().inv_cdf(1 - SAFE_SHARE)
 WIDENINGS = np.geomspace(0.02, 1.0, 18)  # of the base, over its smaller side
-BALLASTS = np.geomspace(0.1, 3.0, 14)  # over the mass of the object
+BALLASTS = np.geomspace(0.1, 1.0, 10)  # over the mass of the object
 WIRE_HEIGHT = 2 / 3  # over the height of the object, if no height is given
 OF_SLENDER = 0.8  # friction at which it slides, over b/h, below which it does not rock
 LEAST_FRICTION = 0.05  # of what can be put below an object: PTFE on polished steel

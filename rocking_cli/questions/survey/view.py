@@ -16,6 +16,7 @@ from rocking_cli.io.spreadsheet import Spreadsheet
 from rocking_cli.io.tables import Columns
 from rocking_cli.names import UNKNOWN, digits_apart, percent
 from rocking_cli.questions.survey.study import LEVELS, FailedEntry, Survey, Surveyed
+from rocking_cli.questions.survey.wording import SurveyedObject, advice
 from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.text import cut, one_line
 from rocking_cli.views.cautions import in_language
@@ -157,6 +158,7 @@ OF_LIST: tuple[Column[RankedStructure], ...] = (
         for level in LEVELS
     ),
     Column("topples", _topples),
+    Column("remedies", lambda row: [asdict(each) for each in row.found.remedies] or None),
     Column("in_space", lambda row: [each._asdict() | {"differs": each.differs} for each in row.found.space] or None),
     Column("not_in_space", of("found.not_in_space"), text=True),
 )
@@ -190,7 +192,7 @@ def view(found: Survey, top: int, say: Language = ENGLISH) -> View:
     """Show the most vulnerable structures, and how many of all overturn."""
     parts: list[Table | str] = []
     if found.rows:
-        parts = [*counts(found), table(found, top), *sentences(found, top, say)]
+        parts = [*counts(found), table(found, top, say=say), *sentences(found, top, say)]
     return translated(say, View(lambda: data(found), parts))
 
 
@@ -214,8 +216,9 @@ def data(found: Survey) -> dict[str, Any]:
     }
 
 
-def _columns(found: Survey) -> list[Column[RankedStructure]]:
-    """Return the columns that apply to a survey."""
+def _columns(found: Survey, say: Language = ENGLISH) -> list[Column[RankedStructure]]:
+    """Return the columns that apply to a survey; what to do about objects is told in a language."""
+    to_do = Column("what_to_do", partial(_advice, found, say), head="what to do", text=True, rank=1)
     return [
         *STRUCTURE,
         *(OF_SITE if found.by == "ratio" else ()),
@@ -223,7 +226,7 @@ def _columns(found: Survey) -> list[Column[RankedStructure]]:
         *(_number(name, unit) for name, unit in found.units.items()),
         *(OF_NEIGHBOURS if found.around.count else ()),
         *(UNDER_MOTIONS if found.motions else ()),
-        *(OF_LIST if found.items else ()),
+        *((*OF_LIST, to_do) if found.items else ()),
         *PARAMETERS,
     ]
 
@@ -294,7 +297,7 @@ def table(found: Survey, top: int, longest: int | None = MAX_NAME_LENGTH, say: L
     """Return a table of the first rows, with names of at most `longest` characters."""
     rows, hidden = _ranked(found), OF_MOTIONS if found.around.count else set[str]()
     shown = [
-        column for column in _columns(found)
+        column for column in _columns(found, say)
         if column.key not in hidden
         and (column.key not in {*RARE, *found.units} or any(column.of(row) not in (None, 0) for row in rows))
     ]  # fmt: skip
@@ -305,6 +308,12 @@ def table(found: Survey, top: int, longest: int | None = MAX_NAME_LENGTH, say: L
     if longest is None:
         return whole
     return replace(whole, rows=[[rank, cut(name, longest), *cells] for rank, name, *cells in whole.rows])
+
+
+def _advice(found: Survey, say: Language, row: RankedStructure) -> str | None:
+    """Return what to do about an object of a list, the first that suffices."""
+    one = SurveyedObject(found.items[row.found.row - 1], row.found)
+    return advice(one, say, 1) if row.found.topples else None
 
 
 def title(found: Survey) -> str:

@@ -39,7 +39,11 @@ from tests.cli.test_cli import ACCEL, run, some
 from tests.conftest import EXAMPLES
 from tests.questions.verify.test_sheet_italian import english_words
 
-LIST = EXAMPLES / "survey" / "collection.csv"
+EXAMPLE = EXAMPLES / "survey" / "collection.csv"
+MISTAKES = {
+    "11,Bust of a poet,62,34,28,40,": "11,Bust of a poet,62,34,28,400,",
+    "12,Lid of a chest,35,": "12,Lid of a chest,,",
+}
 ITALIAN = EXAMPLES / "survey" / "collezione.csv"
 SYMBOLS = re.compile(r"[λφηκζ]|\b(lambda|eta|phi|kappa)\b|\bp\b")
 STRANGE = "=SUM(A1)", "a|b||c", '"quoted" \U0001f600', "_[x]^[2] `code` $x$ <b>&amp;", "# Heading <x>", "@0 !! {{ 1 }}"
@@ -50,9 +54,19 @@ def surveyed(file, motions=None, neighbours=20):
     return study(table_of(file, None), [motion], around=Neighbourhood(neighbours))
 
 
+def with_mistakes(folder):
+    """Write the example with a weight that is ten times too large, and without a height."""
+    text, file = EXAMPLE.read_text(encoding="utf-8"), folder / "collection.csv"
+    for right, wrong in MISTAKES.items():
+        assert right in text
+        text = text.replace(right, wrong)
+    file.write_text(text, encoding="utf-8")
+    return file
+
+
 @pytest.fixture(scope="module")
-def collection():
-    return surveyed(LIST)
+def collection(tmp_path_factory):
+    return surveyed(with_mistakes(tmp_path_factory.mktemp("list")))
 
 
 def document(collection, key="en"):
@@ -340,7 +354,7 @@ class TestFiles:
     def test_twelve_cards_are_two_pages_and_a_word_processor_has_the_document(self):
         docx = pytest.importorskip("docx")
         motion = "--record", ACCEL, "--scale", 0.05, "--neighbours", 1
-        some("survey", LIST, *motion, "--page", "c.docx", "--labels", "l.pdf")
+        some("survey", with_mistakes(Path()), *motion, "--page", "c.docx", "--labels", "l.pdf")
         assert len(re.findall(rb"/Type /Page\b", Path("l.pdf").read_bytes())) == 2
         written = docx.Document("c.docx")
         assert any("likely to fall" in each.text for each in written.paragraphs) and len(written.inline_shapes) == 4
