@@ -2579,7 +2579,12 @@ def respond(  # type: ignore[overload-overlap]
     vertical: GroundMotion | str | Path | None = ...,
     vertical_dt: float | str | None = ...,
     vertical_channel: str | None = ...,
+    transverse: GroundMotion | str | Path | None = ...,
+    transverse_channel: str | None = ...,
     with_pulse: Literal['best', 'sine', 'ricker', 'mavroeidis'] | None = ...,
+    in_space: bool = ...,
+    mesh: str | Path | None = ...,
+    mesh_units: str | None = ...,
     model: ModelName | Sequence[ModelName] | None = ...,
     rtol: float | str = ...,
     restitution: float | str | None = ...,
@@ -2655,8 +2660,19 @@ def respond(  # type: ignore[overload-overlap]
         Sampling interval of the vertical component, if its file has no times. [s]
     vertical_channel : str | None, optional
         Channel of the vertical component in its file.
+    transverse : GroundMotion | str | Path | None, optional
+        Component of the motion along the depth of the body, in three dimensions: a file, or a pulse such as
+        sine:0.2g:0.8s.
+    transverse_channel : str | None, optional
+        Channel of the transverse component in its file.
     with_pulse : {"best", "sine", "ricker", "mavroeidis"}, optional
         Shape of the pulse in the record whose response is computed as well; without a value, the best-fitting one.
+    in_space : bool, optional
+        Simulate a single free body in three dimensions (experimental), under the motion along its width.
+    mesh : str | Path | None, optional
+        Mesh of the body, its shape in three dimensions: OBJ, PLY or STL, z upwards, the motion along x.
+    mesh_units : str | None, optional
+        Unit of the coordinates of the mesh.
     model : ModelName | Sequence[ModelName] | None, optional
         One model or several: nonlinear (the mechanism itself), and its equivalent block (linear1, linear2). By default
         all, or nonlinear alone if the others mislead.
@@ -2758,7 +2774,12 @@ def respond(
     vertical: GroundMotion | str | Path | None = ...,
     vertical_dt: float | str | None = ...,
     vertical_channel: str | None = ...,
+    transverse: GroundMotion | str | Path | None = ...,
+    transverse_channel: str | None = ...,
     with_pulse: Literal['best', 'sine', 'ricker', 'mavroeidis'] | None = ...,
+    in_space: bool = ...,
+    mesh: str | Path | None = ...,
+    mesh_units: str | None = ...,
     model: ModelName | Sequence[ModelName] | None = ...,
     rtol: float | str = ...,
     restitution: float | str | None = ...,
@@ -2806,7 +2827,12 @@ def respond(
     vertical: GroundMotion | str | Path | None = ...,
     vertical_dt: float | str | None = ...,
     vertical_channel: str | None = ...,
+    transverse: GroundMotion | str | Path | None = ...,
+    transverse_channel: str | None = ...,
     with_pulse: Literal['best', 'sine', 'ricker', 'mavroeidis'] | None = ...,
+    in_space: bool = ...,
+    mesh: str | Path | None = ...,
+    mesh_units: str | None = ...,
     model: ModelName | Sequence[ModelName] | None = ...,
     rtol: float | str = ...,
     restitution: float | str | None = ...,
@@ -3248,10 +3274,14 @@ def survey(
     motions: Motion | Sequence[Motion] | Motions = ...,
     *,
     site: SiteLike | None = ...,
+    remedies: Literal['first', 'all'] = ...,
+    in_space: bool = ...,
+    transverse: Motion | Sequence[Motion] | None = ...,
     top: int = ...,
     jobs: int | None = ...,
     in_processes: bool = ...,
     page: str | Path | None = ...,
+    labels: str | Path | None = ...,
     map: str | Path | None = ...,
     sheets: str | Path | None = ...,
     sheet_format: Literal['html', 'docx', 'pdf'] = ...,
@@ -3293,13 +3323,19 @@ def survey(
     Parameters
     ----------
     structures : str | Path | Mapping[str, Sequence[Any]] | StructureTable | Sequence[StructureLike]
-        A table of structures as CSV, .xlsx, .xls or .ods, or its columns by their headings (a frame of pandas is one);
-        or structures, or their YAML files.
+        A table of structures, or a list of objects, as CSV, .xlsx, .xls or .ods, or its columns by their headings (a
+        frame of pandas is one); or structures, or their YAML files.
     motions : Motion | Sequence[Motion] | Motions, optional
         One motion or several, their files, or pulses as text; without any, no histories are followed.
     site : SiteLike | None, optional
         Site file, or its fields in Python: each structure is verified by its code and ranked by the ratio of capacity
         to demand. A column site replaces it for a row. `rocking new site` prints a template.
+    remedies : {"first", "all"}, optional
+        Remedies of objects of a list that may fall: the first that suffices, or all. By default first.
+    in_space : bool, optional
+        Simulate objects of a list in three dimensions too (experimental), with motions along the weaker side.
+    transverse : Motion | Sequence[Motion] | None, optional
+        Component of each motion across it, in three dimensions: a file or a pulse for each, in their order. Repeatable.
     top : int, optional
         Number of structures to show. By default 20.
     jobs : int | None, optional
@@ -3307,7 +3343,10 @@ def survey(
     in_processes : bool, optional
         Share the work of thousands of structures among processes; a script then needs `if __name__ == "__main__"`.
     page : str | Path | None, optional
-        Write an HTML page with a plot, a map and all rows in a sortable table.
+        Write a page with a plot, a map and all rows in a sortable table (.html), or of a list of objects a document by
+        rooms, with pictures and remedies (.pdf and .docx need an extra package; a browser does for .pdf).
+    labels : str | Path | None, optional
+        Write a card for each object of a list, to be cut out (.pdf).
     map : str | Path | None, optional
         Draw a map of the structures, by the columns longitude and latitude (.png, .svg or .pdf).
     sheets : str | Path | None, optional
@@ -3315,7 +3354,8 @@ def survey(
     sheet_format : {"html", "docx", "pdf"}, optional
         Format of the sheets (docx and pdf need an extra package; a browser does for pdf). By default html.
     plot : str | Path | None, optional
-        Plot the uplift acceleration against the frequency parameter (.png, .svg or .pdf).
+        Plot the uplift acceleration against the frequency parameter, or draw the first objects of a list to scale
+        (.png, .svg or .pdf).
     units : str | None, optional
         Unit of the record, if the file does not state it.
     dt : float | str | None, optional

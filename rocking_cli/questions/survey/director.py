@@ -124,6 +124,9 @@ def document(found: Survey, title: TitleBlock, files: Sequence[File], say: Langu
         "of_urgent": len(urgent), "command": title.command, "files": files,
         "questions": [*_questions(found, say)],
         "bad": [[str(each.line), each.name, say.recognised("shown", each.reason)] for each in found.bad],
+        "on_base": [peak.base_pga for each in every for peak in each.found.topples
+                    if found.floor_pga or each.item.base != (None, None)],
+        "unread": "; ".join(every[0].item.inventory.unread),
         "undecided": _numbers([each for each in every if _undecided(each)], say),
         "raised": _numbers([each for each in every if each.item.raised], say),
         "upstairs": _numbers([each for each in every if each.item.storey and each.item.base[0] is None

@@ -45,6 +45,8 @@ NEAREST_HEADING = 0.8  # similarity of a heading to a word, from which that is n
 LIGHTEST = 0.02  # of the mass of a solid: a lighter body is questioned
 FAR_GROUND = 40.0  # m: half of the width of the ground below objects on objects, which none of them leaves
 DEFAULT_DAMPING = 0.05
+ROMAN = ("", "I", "II", "III", "IV", "V", "VI", "VII", "VIII")
+LIKELY_SIDES = 0.02, 5.0  # m, between which a side is not questioned
 NEVER_ROCKS = 1.0  # half of the foot over the height of the centroid, from which no usual friction lets it rock
 BALLAST_HEIGHT = 0.05  # of the middle of what is put in its foot, over the height of an object
 _LETTERED = re.compile(r"(?i)\b(h|w|d|l|p|ø|diam|dia|alt|larg|prof)\b\.?\s*:?\s*([0-9]+(?:[.,][0-9]+)?)")
@@ -536,11 +538,12 @@ class Inventory(Sequence[ListedObject]):
             raise InputError(Problem(what, self.sheet.file, self.sheet.line, hint=hint))
         for key in SIDES:
             k, unit = places.get(key, (0, "m"))
-            if not unit and any(self.sheet.number(row.cells[k]) is not None for row in self.sheet.rows):
-                hint = f"write {self.sheet.headings[k]} ({'kg' if key == 'mass' else 'cm'})"
-                what = "gives no unit, and its numbers have none"
-                field_ = cut(one_line(self.sheet.headings[k]))
-                raise InputError(Problem(what, self.sheet.file, self.sheet.line, field=field_, hint=hint))
+            bare = [row for row in self.sheet.rows if not unit and self.sheet.number(row.cells[k]) is not None]
+            if bare:
+                heading, usual = cut(one_line(self.sheet.headings[k])), "kg" if key == "mass" else "cm"
+                what = f"gives no unit, and {bare[0].cells[k]} in line {bare[0].line} has none"
+                hint = f"write {heading} ({usual}) if all are in {usual}, or the unit in the cell"
+                raise InputError(Problem(what, self.sheet.file, self.sheet.line, field=heading, hint=hint))
         return places, unread
 
     def _item(self, row: Row) -> ListedObject:
@@ -563,6 +566,7 @@ class _Reading:
         self.inventory, self.bare, self.cells = inventory, item, cells
         self.sizes, self.remarks, self.questions = dict[str, float](), list[str](), list[str]()
         self.on, self.raised, self.storey = "", False, None  # type: str, bool, int | None
+        self.from_foot = bool({"foot", "piede"} & {*plain(cells.get("support", "")).split()})
 
     def item(self) -> ListedObject:
         """Return the object. Raises `InputError` if the row cannot be used."""
@@ -571,7 +575,7 @@ class _Reading:
             raise InputError(self.bare._problem(what, hint="is a separator in a cell without quotes?"))
         self._whole_sizes(self.cells.get("sizes", ""))
         for key, unit in UNITS.items():
-            if text := self.cells.get(key, ""):
+            if (text := self.cells.get(key, "")) and plain(text) not in ("", "na", "n a"):
                 self.sizes[key] = self._number(key, text, self.inventory.places[key][1] or unit * (key not in SIDES))
         kind, by_kind = self._kind()
         if by_kind and kind in catalogue()["of_kinds"]["round"] and "diameter" not in self.sizes:
@@ -582,7 +586,7 @@ class _Reading:
         self._storey_of_room()
         self._check()
         if "edge" in self.sizes and "friction" not in self.sizes:
-            self.remarks.append("the distance to the edge has no effect, as nothing slides without a friction")
+            self.questions.append("the distance to the edge has no effect, as nothing slides without a friction")
         if self.on and "gap" in self.sizes:
             self.remarks.append("the free space beside an object that stands on another is not counted")
         if not by_kind and kind == "block":
@@ -600,6 +604,7 @@ class _Reading:
 
     def _number(self, key: str, text: str, unit: str) -> float:
         """Return the number of a cell in the unit in which it is kept; `unit` is that of a plain number."""
+        text = _spelled(text)
         number, kept = self.inventory.sheet.number(text), UNITS[key]
         try:
             if kept in ("", "%"):
@@ -635,11 +640,14 @@ class _Reading:
         unit = stated[1] if stated else unit
         if not unit:
             raise self._fail("gives no unit", "sizes", "write Dimensions (cm)")
-        if lettered := _LETTERED.findall(words):
-            pairs = [(_LETTERS[letter.lower()], number) for letter, number in lettered]
-        else:
-            numbers = re.findall(r"[0-9]+(?:[.,][0-9]+)?", words)
-            pairs = [*zip(("height", "width", "depth"), numbers[:3], strict=False)]
+        pairs = [(_LETTERS[letter.lower()], number) for letter, number in _LETTERED.findall(words)]
+        numbers = re.findall(r"[0-9]+(?:[.,][0-9]+)?", _LETTERED.sub("", words))
+        others = ["height"] if "diameter" in dict(pairs) else ["height", "width", "depth"]
+        others = [key for key in others if key not in dict(pairs)]
+        if len(numbers) > len(others):
+            raise self._fail(f"has more numbers than sides: {cut(one_line(text))!r}", "sizes", "such as 182 x 48 x 36")
+        pairs += zip(others, numbers, strict=False)
+        if numbers:
             self.remarks.append("sides are read as height x width x depth")
         self.sizes |= {key: read(f"{number.replace(',', '.')} {unit}", "m") for key, number in pairs}
 
@@ -662,14 +670,19 @@ class _Reading:
             number = self.inventory.sheet.number(text)
             self.storey = int(float(number)) if number is not None else _ordinal(text)
             if self.storey is None:
-                self.remarks.append(f"floor {cut(one_line(text))!r} is not understood: taken as on the ground")
+                self.questions.append(f"floor {cut(one_line(text))!r} is not understood: taken as on the ground")
         return None
 
     def _storey_of_room(self) -> None:
-        if self.storey is None and re.search(r"(?i)\b(floor|piano|storey)\b", self.bare.room):
+        if self.storey is None and re.search(
+            r"(?i)\b(floor|piano|storey|attic|mezzanin[eo]|soffitta)\b", self.bare.room
+        ):
             self.storey = _ordinal(self.bare.room)
             if self.storey:
-                self.remarks.append(f"stands {self.storey} storeys above the ground, by its room")
+                self.remarks.append(f"storeys below it, by its room: {self.storey}")
+            elif self.storey is None:
+                room = cut(one_line(self.bare.room))
+                self.questions.append(f"floor {room!r} is not understood: taken as on the ground")
 
     def _at_storey(self, floor: Floor, storey: int) -> Floor:
         storeys = round(floor.participation / (3 - 2 * floor.participation)) if floor.participation < 1.5 else 0
@@ -679,37 +692,61 @@ class _Reading:
         return replace(floor, height=storey / storeys)
 
     def _support(self, text: str) -> None:
-        """Read what the object stands on, clause by clause."""
-        supports = catalogue()["supports"]
-        clauses = list[str]()
+        """Read what the object stands on, phrase by phrase; words that mean nothing are questioned."""
+        unused, clauses = list[str](), list[str]()
         for clause in filter(None, map(str.strip, _CLAUSES.split(text))):
-            if clauses and _word_in(clause, supports) is None and _ordinal(clause) is None:
-                clauses[-1] += f" {clause}"
+            if clauses and not _idle_words(clause) and _phrases(clause, catalogue()["supports"])[0][0] is None:
+                clauses[-1] += f" {clause}"  # numbers alone belong to the words before
             else:
                 clauses.append(clause)
         for clause in clauses:
-            word = _word_in(clause, supports)
-            if word == "object" and not self.inventory_codes & {*re.split(r"[\s,]+", clause)}:
-                others = {key: words for key, words in supports.items() if key != "object"}
-                word = _word_in(clause, others) or word
-            if word is None and _ordinal(clause) is None:
-                self.remarks.append(f"support {cut(one_line(clause))!r} is not understood, and has no effect")
-            elif word is not None:
-                self._clause(word, clause)
-            if self.storey is None and re.search(r"(?i)\b(floor|piano|storey)\b", clause):
-                self.storey = _ordinal(clause)
+            rest = clause
+            if on := self._object_in(clause):
+                self.on, rest = on[0], on[1]
+            phrases = _phrases(rest, {key: words for key, words in catalogue()["supports"].items() if key != "object"})
+            for word, phrase in phrases:
+                if word is not None:
+                    self._clause(word, phrase)
+            if self.storey is None and (storey := _ordinal(clause)) is not None:
+                self.storey = storey
+            elif idle := [each for each in _idle_words(rest) if _ordinal(clause) is None]:
+                unused.append(f"{clause!r} ({', '.join(idle)})" if phrases[1:] or phrases[0][0] else repr(clause))
+        if unused:
+            what = cut(one_line(", ".join(unused)))
+            self.questions.append(f"of its support {what} is not understood, and has no effect")
+
+    def _object_in(self, clause: str) -> tuple[str, str] | None:
+        """Return the code of the object that a clause names after words such as `on`, and the rest; None without one.
+
+        Raises `InputError` if the clause names a number that is not in the list.
+        """
+        bare = f" {plain(clause)} "
+        words = [each for each in catalogue()["supports"]["object"] if f" {each} " in bare]
+        if not words:
+            return None
+        before, _, after = bare.partition(f" {max(words, key=len)} ")
+        codes = {f" {plain(each)} ": each for each in self.inventory_codes if each != self.bare.code}
+        shortened = f" {' '.join(each.lstrip('0') for each in after.split())} "
+        named_codes = [each for each in codes if each in f" {after}"] or [
+            each for each in codes if f" {each.strip().lstrip('0')} " in shortened
+        ]  # fmt: skip
+        if named_codes:
+            code = max(named_codes, key=len)
+            return codes[code], before
+        own_code = plain(self.bare.code)
+        if own_code and f" {own_code} " in f" {after}":
+            return self.bare.code, before
+        known = {key: each for key, each in catalogue()["supports"].items() if key != "object"}
+        if not any(sign.isdigit() for sign in after) or _word_in(after, known) is not None:
+            return None
+        raise self._fail(f"stands on {cut(after.strip())}, which is not in the list", "support")
 
     def _clause(self, word: str, clause: str) -> None:
         """Read a clause of a support that a word begins."""
         numbers = [(float(number.replace(",", ".")), unit) for number, unit in _QUANTITY.findall(clause)]
         by_unit = {unit: f"{number} {unit}" for number, unit in numbers}
         lengths = [read(f"{number} {unit}", "m") for number, unit in numbers if unit in ("mm", "cm", "m")]
-        if word == "object":
-            codes = [each for each in map(str.strip, re.split(r"[\s,]+", clause)) if each]
-            self.on = next((each for each in reversed(codes) if each in self.inventory_codes), codes[-1])
-            alike = [each for each in self.inventory_codes if each.lstrip("0") == self.on.lstrip("0")]
-            self.on = alike[0] if self.on not in self.inventory_codes and len(alike) == 1 else self.on
-        elif word == "raised":
+        if word == "raised":
             self.raised = True
             at = f", {lengths[0]:g} m above the floor" if lengths else ""
             self.remarks.append(f"what it stands on{at} is taken as rigid and fixed to the floor")
@@ -718,7 +755,8 @@ class _Reading:
             if plain_numbers:
                 self.sizes.setdefault("friction", plain_numbers[0])
             else:
-                self.remarks.append(f"{cut(one_line(clause))!r} gives no coefficient of friction: nothing slides")
+                what = f"{cut(one_line(clause))!r} gives no coefficient of friction: it is taken not to slide"
+                self.questions.append(what)
         elif word in ("edge", "gap") and lengths:
             self.sizes.setdefault(word, lengths[0])
         elif word == "wax":
@@ -778,14 +816,18 @@ class _Reading:
             body = sizes.get("diameter", sizes.get("width" if key == "foot" else "depth", inf))
             if sizes.get(key, 0.0) > body * (1 + SAME_SIDE):
                 yield f"the foot, {sizes[key]:g} m, is larger than the body, {body:g} m: are the two columns exchanged?"
+        low, high = LIKELY_SIDES
+        for key in ("height", "width", "depth", "diameter"):
+            if key in sizes and not low <= sizes[key] <= high:
+                yield f"the {key} is {sizes[key]:.4g} m: is the unit right?"
         if self._is_flat(across):
             yield f"it is {sizes['height']:g} m high and {max(across):g} m wide: are height and width exchanged?"
         if "edge" in sizes and sizes["edge"] == 0:
             yield "the edge is at the foot: it falls when it begins to slide"
-        elif "edge" in sizes and sizes["edge"] < foot / 2:
+        elif "edge" in sizes and sizes["edge"] < foot / 2 and not self.from_foot:
             yield (
-                f"the edge, {sizes['edge']:g} m away, is closer than half of the foot: is it the distance from the "
-                "foot, and not from the middle?"
+                f"the edge, {sizes['edge']:g} m away, is closer than half of the foot: if it is the distance from the "
+                "foot, and not from the middle, write `edge 5 cm from the foot`"
             )
         if "mass" in sizes:
             yield from self._of_mass(across)
@@ -813,6 +855,36 @@ def lowest_uplift(mechanism: Mechanism) -> float:
     """Return the uplift acceleration of a structure in its weaker direction and plane [its gravity]."""
     weaker = mechanism.weaker_side() or mechanism
     return min(map(weaker.uplift, Direction))
+
+
+def _spelled(text: str) -> str:
+    """Return a quantity as `rocking_cli.units` reads it, such as 86 in for 7'2" and 7 ft 2 in."""
+    text = re.sub(r"(?i)^(ca\.?|circa|approx\.?|about|~)\s*", "", text.strip())
+    if feet := re.fullmatch(r"(?i)([0-9]+)\s*(?:'|ft|feet)\s*([0-9.]+)\s*(?:\"|''|in|inch(?:es)?)?", text):
+        return f"{12 * int(feet[1]) + float(feet[2]):g} in"
+    spelt = {r'"|\binch(es)?\b': " in", r"'|\bfeet\b": " ft", r"\b(lbs|pounds?)\b\.?": "lb", r"\blb\.": "lb"}
+    for pattern, unit in spelt.items():
+        text = re.sub(f"(?i){pattern}", unit, text)
+    return text
+
+
+def _phrases(text: str, words: Mapping[str, Sequence[str]]) -> list[tuple[str | None, str]]:
+    """Return a text in pieces that begin with a word that is known, and what it means; None before the first."""
+    pieces = list[tuple[str | None, str]]()
+    for word in text.split():
+        meaning = _word_in(word, words)
+        if meaning is not None or not pieces:
+            pieces.append((meaning, word))
+        else:
+            pieces[-1] = pieces[-1][0], f"{pieces[-1][1]} {word}"
+    return pieces or [(None, "")]
+
+
+def _idle_words(text: str) -> list[str]:
+    """Return the words of a clause that mean nothing: no known word, number, unit, or filler."""
+    known = {*_words(catalogue()["supports"]), *catalogue()["idle"]["fillers"]}
+    words = [each for each in plain(_QUANTITY.sub(" ", text)).split() if not each.isdigit()]
+    return [each for each in words if each not in known]
 
 
 def sizes_flat(height: float, across: Sequence[float]) -> bool:
@@ -864,8 +936,10 @@ def _ordinal(text: str) -> int | None:
     key = _word_in(text, catalogue()["ordinals"])
     if key is not None:
         return int(key)
-    match = re.search(r"(?i)\b(?:floor|piano|storey|level|livello)\s*([0-9]+)\b", text)
-    return int(match[1]) if match else None
+    if match := re.search(r"(?i)\b(?:floor|piano|storey|level|livello|p)\s*([0-9]+)\b|\b([0-9]+)p\b", text):
+        return int(match[1] or match[2])
+    roman = re.search(r"\b(I{1,3}|IV|VI{0,3}) (?i:piano)\b|\b(?i:piano) (I{1,3}|IV|VI{0,3})\b", text)
+    return ROMAN.index(roman[1] or roman[2]) if roman else None
 
 
 @cache

@@ -175,7 +175,7 @@ def _draw_card(axes: Axes, one: SurveyedObject, x: float, y: float, say: Languag
     part = next((each for each in SCALES if 1000 * max(_width(item) / DRAWN[0], _top(item) / DRAWN[1]) <= each), 1000)
     _draw(axes, one, x + 4 + DRAWN[0] / 2, y + 10, 1000 / part)
     axes.plot([x + 4, x + 4 + DRAWN[0]], [y + 10] * 2, color=style.EARTH, linewidth=style.MEDIUM)
-    sides = {key: say.formula(f"{round(100 * item.sizes[key], 1):g}") for key in SIDES if key in item.sizes}
+    sides = {key: say.formula(f"{100 * item.sizes[key]:.3g}") for key in SIDES if key in item.sizes}
     size = " x ".join(f"Ø {side}" if key == "diameter" else side for key, side in sides.items())
     _write(axes, x + 4, y + 5.5, _shortened(f"{size} cm", DRAWN[0] * MM, style.SMALL), style.SMALL)
     _write(axes, x + 4, y + 2.5, f"1:{part}", style.SMALL, color=style.WORDS[style.STONE])

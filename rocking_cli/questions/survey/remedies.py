@@ -195,16 +195,21 @@ def _slide(trial: _Trial) -> Remedy | None:
     friction = min(item.sizes.get("friction", inf), OF_SLENDER * item.least_foot / (2 * item.centre))
     if friction < LEAST_FRICTION:
         return None
-    sliding, slip = _with(item, friction=friction), 0.0
+    sliding = _with(item, friction=friction)
     if trial.share(sliding) > SAFE_SHARE:
         return None
-    conditions = trial.conditions(sliding)
-    draws = conditions.around.drawn(conditions.model)
-    for motion in sliding.under(trial.motions):
-        outcomes = simulate_neighbours(conditions.model, motion, draws, threads=1)
-        slip = max(slip, float(np.quantile(outcomes.slip, 1 - SAFE_SHARE)))
+    slip = clearance(trial.conditions(sliding), sliding.under(trial.motions))
     fits = slip < item.sizes.get("edge", inf) and slip < item.sizes.get("gap", inf)
     return Remedy("slide", suffices=fits, numbers={"friction": friction, "clearance": slip})
+
+
+def clearance(conditions: Conditions, motions: Sequence[GroundMotion]) -> float:
+    """Return the slip that one in twenty neighbours of a motion exceeds, the largest of some motions [m]."""
+    draws, slips = conditions.around.drawn(conditions.model), [0.0]
+    for motion in motions:
+        outcomes = simulate_neighbours(conditions.model, motion, draws, threads=1)
+        slips.append(float(np.quantile(outcomes.slip, 1 - SAFE_SHARE)))
+    return max(slips)
 
 
 def _isolate(trial: _Trial) -> Remedy | None:

@@ -26,7 +26,7 @@ from rocking_cli.names import OPENING
 from rocking_cli.questions.margin.study import FACTORS, Limits, limited, margin
 from rocking_cli.questions.survey.in_space import SpaceOutcome, outcomes_in_space
 from rocking_cli.questions.survey.inventory import Inventory, ListedObject
-from rocking_cli.questions.survey.remedies import SAFE_SHARE, Remedy, remedies
+from rocking_cli.questions.survey.remedies import SAFE_SHARE, Remedy, clearance, remedies
 from rocking_cli.short_repr import short_repr
 from rocking_cli.structure import Structure, check_opening
 from rocking_cli.studies.conclusion import Concluded, Conclusion, NeighbourShare
@@ -81,8 +81,8 @@ class SurveyResponse:
         The share of the motions that have an unknown outcome; None if the joints are not known, so that nothing was
         checked.
     share : NeighbourShare, optional
-        The share of the neighbours that overturn the structure, the mean over the motions; of two polarities, the
-        worse governs. None without neighbours.
+        The share of the neighbours that overturn the structure, the mean over the motions, or of an object of a list
+        that of the worst motion; of two polarities, the worse governs. None without neighbours.
     slip : float
         The largest slip under the motions that are known not to overturn the structure [m]; 0 if it does not only
         slide.
@@ -200,6 +200,8 @@ class Surveyed:
         What it does in three dimensions under each motion, if that was requested.
     not_in_space : str or None
         Why it was not simulated there.
+    clearance : float
+        The slip that one in twenty of its neighbours exceeds under the worst motion [m], of objects of a list.
     """
 
     row: int
@@ -233,6 +235,7 @@ class Surveyed:
     remedies: Sequence[Remedy] = ()
     space: Sequence[SpaceOutcome] = ()
     not_in_space: str | None = None
+    clearance: float = 0.0
 
     @property
     def caution(self) -> str | None:
@@ -527,9 +530,15 @@ def _part(
             else:
                 rows[k] = replace(one, under=answer)
                 if k in objects:
-                    _, topples, advice, space, why = objects[k]
+                    _, topples, advice, space, why, room = objects[k]
                     rows[k] = replace(
-                        one, under=answer, topples=topples, remedies=advice, space=space, not_in_space=why
+                        one,
+                        under=answer,
+                        topples=topples,
+                        remedies=advice,
+                        space=space,
+                        not_in_space=why,
+                        clearance=room,
                     )
     return rows
 
@@ -542,6 +551,7 @@ class _OfObject(NamedTuple):
     remedies: Sequence[Remedy] = ()
     space: Sequence[SpaceOutcome] = ()
     not_in_space: str | None = None
+    clearance: float = 0.0
 
 
 def _of_object(item: ListedObject, structure: Structure, setting: Setting) -> _OfObject:
@@ -565,10 +575,11 @@ def _of_object(item: ListedObject, structure: Structure, setting: Setting) -> _O
         conditions = Conditions(structure, ["nonlinear"], setting.polarities, around=around)
         topples = [_topples(conditions, each, limit) for each, limit in zip(on_base.motions, limits, strict=True)]
         advice = _remedies(item, topples, setting)
+        room = clearance(conditions, on_base.motions) if answer.slip > 0 else 0.0
     except SolverError as error:
         return _OfObject(error)
-    low, high = (fmean(getattr(each.share, key) for each in topples) for key in ("lowest", "highest"))
-    return _OfObject(replace(answer, share=NeighbourShare(low, high, around.count)), topples, advice, space, why)
+    worst = max((each.share for each in topples), key=lambda each: (each.highest, each.lowest))
+    return _OfObject(replace(answer, share=worst), topples, advice, space, why, room)
 
 
 def _remedies(item: ListedObject, topples: Sequence[Topples], setting: Setting) -> list[Remedy]:

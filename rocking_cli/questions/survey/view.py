@@ -157,7 +157,9 @@ OF_LIST: tuple[Column[RankedStructure], ...] = (
         for k, (key, unit, rank) in enumerate((("pga", "g", 0), ("pgv", "m/s", 3)))
         for level in LEVELS
     ),
+    Column("clearance", of("found.clearance"), "m"),
     Column("topples", _topples),
+    Column("remarks", lambda row: [*row.found.remarks] or None),
     Column("remedies", lambda row: [asdict(each) for each in row.found.remedies] or None),
     Column("in_space", lambda row: [each._asdict() | {"differs": each.differs} for each in row.found.space] or None),
     Column("not_in_space", of("found.not_in_space"), text=True),
@@ -497,8 +499,8 @@ def _of_supports(found: Survey) -> Iterator[str]:
             f"Give {named('floor')}, such as T1=0.3,z/H=0,n=3: then each stands on its own storey."
         )
     yield from _in_space(found.rows)
-    if far := [each for each in found.rows if each.under is not None and each.under.slip >= FAR_SLIP]:
-        most = max(each.under.slip for each in far if each.under is not None)
+    if far := [each for each in found.rows if each.clearance >= FAR_SLIP]:
+        most = max(each.clearance for each in far)
         yield f"{_named(far)}: slides by up to {number(most, 2)} m: keep that clear on all sides."
 
 
@@ -542,6 +544,7 @@ def _of_neighbours(found: Survey) -> Iterator[str]:
             "ranks them: use a weaker motion."
         )
     mean = " of each motion, the mean over the motions" if len(found.motions) > 1 else ""
+    mean = mean.replace("the mean over the motions", "the largest of them") if found.items else mean
     share = f"The share is that of {of}{mean}"
     yield f"{share}; {fewer}." if found.reduced else Aside(f"{share}.")
 

@@ -124,7 +124,7 @@ def advice(one: SurveyedObject, say: Language, most: int | None = None) -> str:
     remedies = one.found.remedies
     helps = [each for each in remedies if each.suffices and not each.against][:most]
     helps = helps or [each for each in remedies if not each.against and (each.suffices is None or each.kind == "none")]
-    slip = one.found.under.slip if one.found.under is not None else 0.0
+    slip = one.found.clearance
     if not remedies:
         slides = say("it slides: keep {slip} cm free all around", slip=say.formula(f"{_whole(100 * slip):g}"))
         return slides if slip >= MIN_TOLD_SLIP else say("nothing to do")

@@ -265,7 +265,7 @@ class TestWords:
             return advice(
                 SurveyedObject(
                     replace(one.item, on=on),
-                    replace(one.found, remedies=remedies, under=replace(one.found.under, slip=slip)),
+                    replace(one.found, remedies=remedies, clearance=slip),
                 ),
                 say,
                 most,
