@@ -230,7 +230,8 @@ def margin(
 
 def limited(outcomes: Outcomes, limits: Limits, strength: Reals, slender: Reals | float = 1.0) -> Outcomes:
     """Return outcomes of a body where something else decides too, each at a factor on the motion and slenderness."""
-    held, ends = strength < limits.held_to * slender, strength >= limits.ends_from
+    ends = strength >= limits.ends_from
+    held = (strength < limits.held_to * slender) & ~ends
     off_edge = (outcomes.slip >= limits.clearance) & ~outcomes.fell
     fell_to = np.where(held | ends, 0, np.where(off_edge, 1, outcomes.fell_to))
     return replace(

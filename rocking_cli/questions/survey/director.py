@@ -18,7 +18,7 @@ from rocking_cli.processing.reading import Scaled
 from rocking_cli.questions.survey.asked import SurveyAsked
 from rocking_cli.questions.survey.inventory import Inventory
 from rocking_cli.questions.survey.portraits import DRAWN_TOGETHER, draw_room, scale_of, write_cards
-from rocking_cli.questions.survey.study import LEVELS, Survey
+from rocking_cli.questions.survey.study import FEWEST_NEIGHBOURS, LEVELS, Survey
 from rocking_cli.questions.survey.view import RankedStructure, caution_of
 from rocking_cli.questions.survey.wording import DANGERS, SurveyedObject, advice, objects, printed, reading
 from rocking_cli.questions.verify import sheets
@@ -38,9 +38,10 @@ def check(asked: SurveyAsked, entries: Sequence[Any]) -> None:
     if not isinstance(entries, Inventory):
         other = f", or {named('page')} a file that ends in .html" if of_page else ""
         raise InputError(f"{what} is for a list of objects, with headings such as `Height (cm)`: give one{other}")
-    if not shaken or asked.neighbours == 0:
-        give = f"leave out {named('neighbours')} 0" if shaken else f"give ground motions, such as {named('motions')}"
-        raise InputError(f"{what} tells which objects fall, which requires ground motions and neighbours: {give}")
+    if not shaken or (asked.neighbours is not None and asked.neighbours < FEWEST_NEIGHBOURS):
+        give = f"leave out {named('neighbours')}" if shaken else f"give ground motions, such as {named('motions')}"
+        least = f"ground motions and {FEWEST_NEIGHBOURS} neighbours or more"
+        raise InputError(f"{what} tells which objects fall, which requires {least}: {give}")
     if of_page and asked.page is not None:
         sheets.check_program(asked.page.suffix.lower())
 
@@ -55,7 +56,7 @@ def write(asked: SurveyAsked, found: Survey, motions: Sequence[Scaled], language
     Refused
         If a file cannot be written.
     """
-    if not found.around.count:
+    if found.around.count < FEWEST_NEIGHBOURS:
         raise InputError(f"no classes: neighbours would take too long; give {named('neighbours')} their number")
     if asked.page is not None and asked.has_document:
         title = asked.title(asked.origin or "rocking_cli.survey(...)", language)

@@ -40,19 +40,29 @@ UNITS = {
 }  # fmt: skip
 """Fields that are numbers, with the unit in which they are kept; a damping in % is kept as a ratio."""
 SIDES = ("height", "width", "depth", "diameter", "foot", "foot_depth", "centre", "mass")
+BARE = ("friction", "damping", "period")
+"""Fields whose numbers may have no unit."""
 SAME_SIDE = 0.01  # relative difference of sides that count as equal
 NEAREST_HEADING = 0.8  # similarity of a heading to a word, from which that is named
+SOLID = 0.5  # of the density of a material, above which nothing is hollow
 LIGHTEST = 0.02  # of the mass of a solid: a lighter body is questioned
 FAR_GROUND = 40.0  # m: half of the width of the ground below objects on objects, which none of them leaves
 DEFAULT_DAMPING = 0.05
 ROMAN = ("", "I", "II", "III", "IV", "V", "VI", "VII", "VIII")
 LIKELY_SIDES = 0.02, 5.0  # m, between which a side is not questioned
+MOST_FRICTION = 2.0
 NEVER_ROCKS = 1.0  # half of the foot over the height of the centroid, from which no usual friction lets it rock
 BALLAST_HEIGHT = 0.05  # of the middle of what is put in its foot, over the height of an object
-_LETTERED = re.compile(r"(?i)\b(h|w|d|l|p|ø|diam|dia|alt|larg|prof)\b\.?\s*:?\s*([0-9]+(?:[.,][0-9]+)?)")
-_LETTERS = {"h": "height", "alt": "height", "w": "width", "l": "width", "larg": "width", "d": "depth", "p": "depth",
-            "prof": "depth", "ø": "diameter", "diam": "diameter", "dia": "diameter"}  # fmt: skip
-_QUANTITY = re.compile(r"(?<![\w.,])([0-9]+(?:[.,][0-9]+)?)\s*(kPa|MPa|Pa|kN|N|mm2|cm2|m2|mm|cm|m|s|%)?(?![\w])")
+_LETTER = r"height|width|depth|diam(?:eter)?|dia|altezza|larghezza|profondita|alt|largh?|prof|h|w|d|l|p|ø"
+_SIDE = re.compile(
+    rf"\(?(?P<before>{_LETTER})?\)?[\s.:]*(?P<number>[0-9]+(?:[.,][0-9]+)?)\s*(?P<unit>mm|cm|m|in|ft)?\.?"
+    rf"\s*\(?(?P<after>{_LETTER})?\)?\s*(?P<last>mm|cm|m|in)?\.?"
+)
+_LETTERS = {"h": "height", "alt": "height", "height": "height", "altezza": "height", "w": "width", "l": "width",
+            "larg": "width", "largh": "width", "width": "width", "larghezza": "width", "d": "depth", "p": "depth",
+            "prof": "depth", "depth": "depth", "profondita": "depth", "ø": "diameter", "diam": "diameter",
+            "dia": "diameter", "diameter": "diameter"}  # fmt: skip
+_QUANTITY = re.compile(r"(?<![\w.,])([0-9]*[.,]?[0-9]+)\s*(kPa|MPa|Pa|kN|N|mm2|cm2|m2|mm|cm|m|in|s|%)?(?![\w])")
 _TRAILING = re.compile(r"(?i)(.*?)[\s,_/]+(?:in\s+)?(mm|cm|m|kg|g|lb|ft)\.?")
 _CLAUSES = re.compile(r"\s*[;+]\s*|,\s+|,(?=\D)")
 
@@ -155,8 +165,22 @@ class ListedObject:
 
     @property
     def is_hollow(self) -> bool:
-        """Whether there is room for sand or weights in it."""
-        return self.kind in catalogue()["of_kinds"]["hollow"]
+        """Whether there is room for sand or weights in it: by its kind, unless it is as heavy as half of a solid."""
+        materials = _materials_in(self.material)
+        dense = self.mass is not None and bool(materials) and self.density > SOLID * max(each[0] for each in materials)
+        return self.kind in catalogue()["of_kinds"]["hollow"] and not dense
+
+    @property
+    def density(self) -> float:
+        """Its mass over the volume of its sides [kg/m3]."""
+        (width, _), (depth, _) = (self.widths(turned=turned) for turned in (False, True))
+        return (self.mass or 0.0) / (width * depth * self.height * (pi / 4 if self.is_round else 1.0))
+
+    @property
+    def foot_area(self) -> float:
+        """Area of its foot [m2]."""
+        (_, foot), (_, deep) = (self.widths(turned=turned) for turned in (False, True))
+        return foot * deep * (pi / 4 if self.is_round else 1.0)
 
     @property
     def cracks(self) -> bool:
@@ -185,8 +209,11 @@ class ListedObject:
             return sizes["diameter"], sizes.get("foot", sizes["diameter"])
         width, depth = (sizes.get(key) for key in ("width", "depth"))
         body = (depth or width) if turned else (width or depth)
-        foot = sizes.get("foot_depth", sizes.get("foot")) if turned else sizes.get("foot", sizes.get("foot_depth"))
         assert body is not None  # checked when it was read
+        foot, other = (sizes.get(key) for key in (("foot_depth", "foot") if turned else ("foot", "foot_depth")))
+        if foot is None and other is not None:  # that of the other plane, which may be the wider one
+            is_square = width is None or depth is None or abs(width / depth - 1) <= SAME_SIDE
+            foot = other if is_square else min(body, other)
         return body, body if foot is None else foot
 
     @property
@@ -211,8 +238,24 @@ class ListedObject:
     @property
     def carried(self) -> list[ListedObject]:
         """The objects that stand on it, and those on them."""
-        direct = [each for each in self.inventory.items if each.on and each.on == self.code and each is not self]
-        return [each for one in direct for each in (one, *one.carried)]
+        above = [self]
+        for below in above:  # grows
+            rows = {id(each.row) for each in above}
+            direct = [each for each in self.inventory.items if each.on and id(each.row) not in rows]
+            above += [
+                each
+                for each in direct
+                if each.on in self.inventory.by_code and self.inventory.by_code[each.on].row is below.row
+            ]
+        return above[1:]
+
+    @property
+    def whole(self) -> tuple[float, float]:
+        """Mass [kg] and height of the centroid [m] of it and all that stands on it; its mass is given."""
+        loads = self._carries(self.height)
+        masses = [self.mass or 0.0, *(each["mass"] for each in loads)]
+        heights = [self.centre, *(each["at"][1] for each in loads)]
+        return sum(masses), float(np.dot(masses, heights)) / sum(masses)
 
     def _problem(self, message: str, key: str = "", hint: str | None = None) -> Problem:
         return Problem(message, self.inventory.sheet.file, self.line, field=self.inventory.heading(key), hint=hint)
@@ -240,6 +283,8 @@ class ListedObject:
         for each in chain[:-1]:
             if each.wrong is not None:
                 raise InputError(self._problem(f"stands on {each.name}, whose row cannot be used", "support"))
+        if broken := [each for each in self.carried if each.wrong is not None]:
+            raise InputError(self._problem(f"carries {broken[0].name}, whose row cannot be used", "support"))
         planes = [(self._built(chain, turned=turned), turned) for turned in self._planes(chain)]
         return min(planes, key=lambda each: round(lowest_uplift(each[0]), 9))
 
@@ -271,12 +316,8 @@ class ListedObject:
         """Return mechanism and fields of the object alone, with what it carries as masses."""
         (body, foot), mass, sizes = self.widths(turned=turned), self.mass, self.sizes
         fields: dict[str, Any] = {"friction": sizes["friction"]} if "friction" in sizes else {}
-        if "gap" in sizes:
-            farthest = self.height if foot >= body else self.height / 2
-            fields["stops"] = [
-                {"name": side, "point": [sign * body / 2, farthest], "gap": sign * sizes["gap"]}
-                for side, sign in (("right neighbour", 1), ("left neighbour", -1))
-            ]
+        if stops := self._neighbours(body, foot, 0.0):
+            fields["stops"] = stops
         if loads := self._carries(self.height):
             fields["loads"] = loads
         if self.ballast:
@@ -294,6 +335,14 @@ class ListedObject:
             **fields, **self._of_body(body, 0.0), "left_foot": [-foot / 2, 0.0], "right_foot": [foot / 2, 0.0],
             "polygon": self.silhouette(body, foot, 0.0),
         }  # fmt: skip
+
+    def _neighbours(self, body: float, foot: float, base: float) -> list[dict[str, Any]]:
+        """Return what it would meet beside it, at its widest."""
+        widest = base + (self.height if foot >= body else self.height / 2)
+        return [
+            {"name": side, "point": [sign * body / 2, widest], "gap": sign * self.sizes["gap"]}
+            for side, sign in (("right neighbour", 1), ("left neighbour", -1)) if "gap" in self.sizes
+        ]  # fmt: skip
 
     def _of_body(self, body: float, base: float) -> dict[str, Any]:
         """Return mass, centroid and inertia, about it, of a uniform body as wide and high as the object."""
@@ -328,15 +377,18 @@ class ListedObject:
             else:
                 x, top = body / 2, base + each.height
                 shape = {"polygon": [[-x, base], [x, base], [x, top], [-x, top]], "mass": each.mass}
-            blocks[each.name] = shape
+            name = each.name if each.name not in blocks else f"{each.name} of line {each.line}"
+            blocks[name] = shape
             if "friction" in each.sizes:
-                frictions[f"{below} and {each.name}"] = each.sizes["friction"]
-            base, below = base + each.height, each.name
+                frictions[f"{below} and {name}"] = each.sizes["friction"]
+            stops = [{**stop, "body": name} for stop in each._neighbours(body, foot, base)]
+            base, below = base + each.height, name
         floor = [[-FAR_GROUND, -1.0], [FAR_GROUND, -1.0], [FAR_GROUND, 0.0], [-FAR_GROUND, 0.0]]
         fields: dict[str, Any] = {"blocks": blocks, "ground": {"floor": {"polygon": floor}}}
         fields |= {"friction_of": frictions} if frictions else {}
+        fields |= {"stops": stops} if stops else {}
         if loads := self._carries(base):
-            fields["loads"] = [{**each, "body": self.name} for each in loads]
+            fields["loads"] = [{**each, "body": below} for each in loads]
         return fields
 
     def _carries(self, top: float) -> list[dict[str, Any]]:
@@ -364,14 +416,15 @@ class ListedObject:
 
     def limits(self, motion: GroundMotion) -> Limits:
         """Return what decides besides rocking under a motion of what it stands on, at factors on it."""
-        hold, (_, isolator) = self.holds_to(), self.base
+        hold, (_, isolator) = self.holds_to() if motion.vertical is None else 0.0, self.base
         if hold:  # what it stands on may move with it
             hold = min([hold, *(lowest_uplift(each.make()) for each in self.chain[:-1])])
         ends = inf
         if isolator is not None:
             below = self.inventory.below_isolator(self, motion)
             moves = peak_displacement(below, isolator.period, isolator.damping)
-            ends = isolator.stroke / moves if moves > 0 else inf
+            room = min(isolator.stroke, *(each.sizes.get(key, inf) for each in self.chain for key in ("gap", "edge")))
+            ends = room / moves if moves > 0 else inf
         peak = motion.pga_g
         return Limits(self.room_to_slide, hold / peak if peak > 0 else 0.0, ends)
 
@@ -397,14 +450,15 @@ class ListedObject:
         middle of the foot, of width b, and a wire with the force F at the height z: about the edge of the foot
         m a h_c = (m g + T) b/2 + F z. The shear m a is held by the wires and by wax, or without wax by friction.
         """
-        sizes, mass = self.sizes, self.mass
-        if mass is None or not {"wax_area", "wire"} & set(sizes):
+        sizes = self.sizes
+        if self.mass is None or not {"wax_area", "wire"} & set(sizes):
             return 0.0
         area, force = sizes.get("wax_area", 0.0), sizes.get("wire", 0.0)
+        mass, centre = self.whole
         weight = mass * STANDARD_GRAVITY
         pull = area * sizes.get("wax_tension", 0.0)
         height = sizes.get("wire_height", self.centre)
-        turns = ((weight + pull) * self.least_foot / 2 + force * height) / (weight * self.centre)
+        turns = ((weight + pull) * self.least_foot / 2 + force * height) / (weight * centre)
         shear = area * sizes.get("wax_shear", 0.0) if area else sizes.get("friction", inf) * weight
         return min(turns, (shear + force) / weight)
 
@@ -522,6 +576,12 @@ class Inventory(Sequence[ListedObject]):
                 name, unit = stated.groups()
             name, unit = (name, unit) if not unit or kind_of(unit) or unit == "%" else (heading, "")
             key = _meaning(name, catalogue()["headings"])
+            if key in SIDES and key in places:
+                first = cut(one_line(self.sheet.headings[places[key][0]]))
+                message, hint = f"is the same side as {first}", "rename the one that does not count, as `Other width`"
+                raise InputError(
+                    Problem(message, self.sheet.file, self.sheet.line, field=cut(one_line(heading)), hint=hint)
+                )
             if key is None or key in places:
                 close = get_close_matches(_bare(name), _words(catalogue()["headings"]), 1, NEAREST_HEADING)
                 nearest = f" (did you mean {close[0]}?)" if close and key is None else ""
@@ -553,10 +613,11 @@ class Inventory(Sequence[ListedObject]):
             inventory=self, row=row, code=cells.get("code", ""), title=one_line(cells.get("name", "")),
             room=one_line(cells.get("room", "")), material=one_line(cells.get("material", "")),
         )  # fmt: skip
+        reading = _Reading(self, item, cells)
         try:
-            return _Reading(self, item, cells).item()
+            return reading.item()
         except InputError as error:
-            return replace(item, wrong=error)
+            return replace(item, wrong=error, on=reading.on)
 
 
 class _Reading:
@@ -566,6 +627,7 @@ class _Reading:
         self.inventory, self.bare, self.cells = inventory, item, cells
         self.sizes, self.remarks, self.questions = dict[str, float](), list[str](), list[str]()
         self.on, self.raised, self.storey = "", False, None  # type: str, bool, int | None
+        self.kind = "block"
         self.from_foot = bool({"foot", "piede"} & {*plain(cells.get("support", "")).split()})
 
     def item(self) -> ListedObject:
@@ -573,22 +635,21 @@ class _Reading:
         if self.bare.row.too_many is not None:
             what = f"has more cells than headings; the first extra cell is {cut(one_line(self.bare.row.too_many))!r}"
             raise InputError(self.bare._problem(what, hint="is a separator in a cell without quotes?"))
+        self._support(self.cells.get("support", ""))
         self._whole_sizes(self.cells.get("sizes", ""))
         for key, unit in UNITS.items():
             if (text := self.cells.get(key, "")) and plain(text) not in ("", "na", "n a"):
-                self.sizes[key] = self._number(key, text, self.inventory.places[key][1] or unit * (key not in SIDES))
-        kind, by_kind = self._kind()
+                self.sizes[key] = self._number(key, text, self.inventory.places[key][1] or unit * (key in BARE))
+        self.kind, by_kind = self._kind()
+        kind = self.kind
         if by_kind and kind in catalogue()["of_kinds"]["round"] and "diameter" not in self.sizes:
             sides = [self.sizes.pop(key) for key in ("width", "depth") if key in self.sizes]
             self.sizes |= {"diameter": min(sides)} if sides else {}
         floor = self._floor(self.cells.get("storey", ""))
-        self._support(self.cells.get("support", ""))
         self._storey_of_room()
         self._check()
         if "edge" in self.sizes and "friction" not in self.sizes:
             self.questions.append("the distance to the edge has no effect, as nothing slides without a friction")
-        if self.on and "gap" in self.sizes:
-            self.remarks.append("the free space beside an object that stands on another is not counted")
         if not by_kind and kind == "block":
             self.remarks.append("taken as a block of its sides")
         if floor is None and self.storey is not None and self.inventory.floor is not None:
@@ -605,12 +666,18 @@ class _Reading:
     def _number(self, key: str, text: str, unit: str) -> float:
         """Return the number of a cell in the unit in which it is kept; `unit` is that of a plain number."""
         text = _spelled(text)
+        comma = self.inventory.sheet.decimal_comma
+        if re.match(r"[0-9]{1,3}([.,][0-9]{3})+(?![0-9])(?:\s*mm)" + (r"|[0-9]{1,3}(\.[0-9]{3})+(?![0-9])" if comma
+                    else r"|[0-9]{1,3}(,[0-9]{3})+(?![0-9])"), text):  # fmt: skip
+            what = f"{cut(one_line(text))} may have a separator of thousands"
+            raise self._fail(what, key, "write it without one")
         number, kept = self.inventory.sheet.number(text), UNITS[key]
         try:
             if kept in ("", "%"):
                 plain_number = (number or text).replace("%", "").strip()
                 share = float(plain_number.replace(",", "."))
-                value = share / 100 if kept == "%" and (share > 1 or "%" in text or unit == "%") else share
+                in_percent = "%" in text or unit == "%" or (kept == "%" and share > 1)
+                value = share / 100 if in_percent else share
             else:
                 value = read(f"{number} {unit}" if number is not None else text.replace(",", "."), kept)
         except UnitError as error:
@@ -620,6 +687,8 @@ class _Reading:
             value = float(weight)
         except ValueError:
             raise self._fail(f"must be a number, got {cut(one_line(text))!r}", key) from None
+        if key == "friction" and value > MOST_FRICTION:
+            raise self._fail(f"must be at most {MOST_FRICTION:g}, got {cut(one_line(text))}", key)
         if not value > 0 and not (key in ("edge", "friction") and value == 0):
             raise self._fail(f"must be above 0, got {cut(one_line(text))}", key)
         return value
@@ -632,24 +701,40 @@ class _Reading:
             return None
 
     def _whole_sizes(self, text: str) -> None:
-        """Read all sides in one cell: 182 x 48 x 36 cm as height, width and depth, or each after its letter."""
+        """Read all sides in one cell: 182 x 48 x 36 cm as height, width and depth, or each with its letter."""
         if not text:
             return
-        unit = self.inventory.places["sizes"][1]
-        words, stated = text, re.search(r"(mm|cm|m|in)\W*$", text.strip())
-        unit = stated[1] if stated else unit
-        if not unit:
-            raise self._fail("gives no unit", "sizes", "write Dimensions (cm)")
-        pairs = [(_LETTERS[letter.lower()], number) for letter, number in _LETTERED.findall(words)]
-        numbers = re.findall(r"[0-9]+(?:[.,][0-9]+)?", _LETTERED.sub("", words))
-        others = ["height"] if "diameter" in dict(pairs) else ["height", "width", "depth"]
-        others = [key for key in others if key not in dict(pairs)]
-        if len(numbers) > len(others):
-            raise self._fail(f"has more numbers than sides: {cut(one_line(text))!r}", "sizes", "such as 182 x 48 x 36")
-        pairs += zip(others, numbers, strict=False)
-        if numbers:
+        usual, shown = self.inventory.places["sizes"][1], cut(one_line(text))
+        bare = re.sub(
+            r"(?<=[0-9a-z])\s*\([^()]*[0-9][^()]*\)\s*$",
+            "",
+            text.strip().replace("\N{MULTIPLICATION SIGN}", "x").lower(),
+        )
+        sides = [
+            _SIDE.fullmatch(each)
+            for each in re.split(rf"\s*(?:\bx\b|(?<=[0-9])x(?=[0-9])|,\s+|;)\s*|(?<=[0-9])\s+(?=(?:{_LETTER})\b)", bare)
+        ]
+        known = [each for each in sides if each is not None]
+        stated = [each["unit"] or each["last"] or "" for each in known]
+        letters = [_LETTERS.get(each["before"] or each["after"] or "", "") for each in known]
+        words = [each["before"] or each["after"] or "" for each in known]
+        if {"w", "width", "larg", "largh", "larghezza"} & {*words}:  # then L is the length, along the depth
+            letters = ["depth" if word == "l" else key for word, key in zip(words, letters, strict=True)]
+        units = [*filter(None, stated)]
+        shared = usual if not units else units[0] if units == stated[-1:] else ""
+        free = ["height"] if "diameter" in letters else ["height", "width", "depth"]
+        free = [key for key in free if key not in letters]
+        hint = "such as 182 x 48 x 36, as height, width and depth"
+        unclear = len(known) < len(sides) or letters.count("") > len(free)
+        unclear |= any(re.search(r"[0-9][.,][0-9]{3}$", each["number"]) for each in known)  # of thousands, perhaps
+        unclear |= len(set(filter(None, letters))) < len([*filter(None, letters)])
+        if unclear or not all(each or shared for each in stated):
+            raise self._fail(f"{shown!r} is not understood, or a side lacks its unit", "sizes", hint)
+        if "" in letters:
             self.remarks.append("sides are read as height x width x depth")
-        self.sizes |= {key: read(f"{number.replace(',', '.')} {unit}", "m") for key, number in pairs}
+        for key, each, unit in zip(letters, known, stated, strict=True):
+            number = each["number"].replace(",", ".")
+            self.sizes[key or free.pop(0)] = read(f"{number} {unit or shared}", "m")
 
     def _kind(self) -> tuple[str, bool]:
         """Return the kind of the object, and whether a column of kinds gives it, or else its name."""
@@ -668,21 +753,28 @@ class _Reading:
                 raise self._fail(error.problems[0].message, "storey", error.problems[0].hint) from None
         if text:
             number = self.inventory.sheet.number(text)
-            self.storey = int(float(number)) if number is not None else _ordinal(text)
-            if self.storey is None:
-                self.questions.append(f"floor {cut(one_line(text))!r} is not understood: taken as on the ground")
+            is_whole = number is not None and float(number) >= 0 and float(number).is_integer()
+            self.storey = int(float(number)) if number is not None and is_whole else _ordinal(text)
+            if self.storey is None or (number is not None and not is_whole):
+                self._on_unknown_floor(text)
         return None
 
     def _storey_of_room(self) -> None:
         if self.storey is None and re.search(
-            r"(?i)\b(floor|piano|storey|attic|mezzanin[eo]|soffitta)\b", self.bare.room
+            r"(?i)\b(floor|piano|storey|level|livello|attic|mezzanin[eo]|soffitta)\b", self.bare.room
         ):
             self.storey = _ordinal(self.bare.room)
             if self.storey:
                 self.remarks.append(f"storeys below it, by its room: {self.storey}")
             elif self.storey is None:
-                room = cut(one_line(self.bare.room))
-                self.questions.append(f"floor {room!r} is not understood: taken as on the ground")
+                self._on_unknown_floor(self.bare.room)
+
+    def _on_unknown_floor(self, text: str) -> None:
+        """Question a floor that is not understood; where floors move, raise `InputError`."""
+        shown = cut(one_line(text))
+        if self.inventory.floor is not None:
+            raise self._fail(f"floor {shown!r} is not understood", "storey", "give the number of storeys below it")
+        self.questions.append(f"floor {shown!r} is not understood: taken as on the ground")
 
     def _at_storey(self, floor: Floor, storey: int) -> Floor:
         storeys = round(floor.participation / (3 - 2 * floor.participation)) if floor.participation < 1.5 else 0
@@ -722,16 +814,27 @@ class _Reading:
         """
         bare = f" {plain(clause)} "
         words = [each for each in catalogue()["supports"]["object"] if f" {each} " in bare]
-        if not words:
-            return None
-        before, _, after = bare.partition(f" {max(words, key=len)} ")
+        if words:
+            before, _, after = bare.partition(f" {max(words, key=len)} ")
+        else:  # a number alone, or after the word of what bears it
+            before, after = (
+                "",
+                " ".join(each for each in bare.split() if each not in catalogue()["idle"]["bearers"]) + " ",
+            )
+            if after.strip() not in {plain(each) for each in self.inventory_codes}:
+                return None
         codes = {f" {plain(each)} ": each for each in self.inventory_codes if each != self.bare.code}
         shortened = f" {' '.join(each.lstrip('0') for each in after.split())} "
+        others = {key: each for key, each in catalogue()["supports"].items() if key in ("raised", "isolator")}
+        if _word_in(after, others) is not None:
+            return None  # as on 2 trestles
         named_codes = [each for each in codes if each in f" {after}"] or [
             each for each in codes if f" {each.strip().lstrip('0')} " in shortened
         ]  # fmt: skip
         if named_codes:
             code = max(named_codes, key=len)
+            if [each for each in named_codes if each.strip() not in code]:
+                raise self._fail("stands on two objects: list it on the one that bears it", "support")
             return codes[code], before
         own_code = plain(self.bare.code)
         if own_code and f" {own_code} " in f" {after}":
@@ -743,21 +846,29 @@ class _Reading:
 
     def _clause(self, word: str, clause: str) -> None:
         """Read a clause of a support that a word begins."""
-        numbers = [(float(number.replace(",", ".")), unit) for number, unit in _QUANTITY.findall(clause)]
+        shown = cut(one_line(clause))
+        if re.search(r"[0-9]\s*[-\u2013]\s*[0-9]", clause):
+            raise self._fail(f"{shown!r} is a range: give one number", "support")
+        plain_text = clause.replace("\N{SUPERSCRIPT TWO}", "2")
+        numbers = [(float(number.replace(",", ".")), unit) for number, unit in _QUANTITY.findall(plain_text)]
         by_unit = {unit: f"{number} {unit}" for number, unit in numbers}
-        lengths = [read(f"{number} {unit}", "m") for number, unit in numbers if unit in ("mm", "cm", "m")]
+        lengths = [read(f"{number} {unit}", "m") for number, unit in numbers if unit in ("mm", "cm", "m", "in")]
         if word == "raised":
             self.raised = True
             at = f", {lengths[0]:g} m above the floor" if lengths else ""
             self.remarks.append(f"what it stands on{at} is taken as rigid and fixed to the floor")
         elif word == "friction":
-            plain_numbers = [number for number, unit in numbers if not unit]
-            if plain_numbers:
-                self.sizes.setdefault("friction", plain_numbers[0])
+            coefficients = [number / (100 if unit == "%" else 1) for number, unit in numbers if unit in ("", "%")]
+            if coefficients and coefficients[-1] > MOST_FRICTION:
+                raise self._fail(f"{shown!r}: friction must be at most {MOST_FRICTION:g}", "support")
+            if coefficients:
+                self.sizes.setdefault("friction", coefficients[-1])
             else:
                 what = f"{cut(one_line(clause))!r} gives no coefficient of friction: it is taken not to slide"
                 self.questions.append(what)
-        elif word in ("edge", "gap") and lengths:
+        elif word in ("edge", "gap"):
+            if not lengths:
+                raise self._fail(f"{shown!r} has no length with its unit, such as {word} 5 cm", "support")
             self.sizes.setdefault(word, lengths[0])
         elif word == "wax":
             stresses = [read(f"{number} {unit}", "Pa") for number, unit in numbers if unit in ("Pa", "kPa", "MPa")]
@@ -766,10 +877,15 @@ class _Reading:
             self.sizes = {**{key: value for key, value in keys if value > 0}, **self.sizes}
         elif word == "wire":
             forces = [read(by_unit[unit], "N") for unit in ("N", "kN") if unit in by_unit]
+            if not forces:
+                raise self._fail(f"{shown!r} has no force, such as wires 600 N at 1.5 m", "support")
             keys = zip(("wire", "wire_height"), (forces[:1] or [0.0]) + lengths, strict=False)
             self.sizes = {**{key: value for key, value in keys if value > 0}, **self.sizes}
         elif word == "isolator":
             given = {"period": by_unit.get("s"), "damping": by_unit.get("%")}
+            if given["period"] is None or not lengths:
+                what = "the isolator has no stroke" if given["period"] else f"{shown!r} has no period"
+                raise self._fail(what, "support", "such as isolator 2.5 s 15 % 25 cm: period, damping and stroke")
             read_ = {key: self._number(key, text, "") for key, text in given.items() if text}
             self.sizes = {**read_, **({"stroke": lengths[0]} if lengths else {}), **self.sizes}
 
@@ -796,8 +912,26 @@ class _Reading:
         if "wax_area" in sizes and not {"wax_tension", "wax_shear"} <= set(sizes):
             hint = "such as `wax 20 cm2 40 kPa 30 kPa`: area, tension and shear that the adhesive holds"
             raise self._fail("the wax has no strength in tension and in shear", "support", hint)
+        if self.on and "period" in sizes:
+            raise self._fail("an isolator between two objects is not modelled", "support")
+        if sizes.get("wire_height", 0.0) > sizes["height"]:
+            raise self._fail(f"is above the top, {sizes['height']:g} m", "wire_height")
+        flat = replace(self.bare, sizes=sizes)
+        if sizes.get("wax_area", 0.0) > flat.foot_area:
+            raise self._fail(f"is larger than the foot, {1e4 * flat.foot_area:.4g} cm2", "wax_area")
         if sizes.get("centre", 0.0) >= sizes["height"]:
             raise self._fail(f"is not below the height, {sizes['height']:g} m", "centre")
+        sides = [sizes[key] for key in ("width", "depth") if key in sizes]
+        if "diameter" in sizes and sides:
+            self.questions.append("it has a diameter and other sides: the smaller ones were used")
+            if min(sides) < sizes["diameter"]:
+                del sizes["diameter"]
+        if "vase" in (self.kind, _word_in(self.bare.title, catalogue()["kinds"])) and not {"foot", "foot_depth"} & {
+            *sizes
+        }:
+            self.questions.append("a vase without the size of its foot: taken as wide as the body")
+        if "diameter" in sizes and "foot" in sizes:
+            self.remarks.append("its foot is round: it may roll on its rim, out of the plane, which is not modelled")
         feet = [sizes[key] for key in ("foot", "foot_depth") if key in sizes] or [
             sizes[key] for key in ("width", "depth", "diameter") if key in sizes
         ]
@@ -883,7 +1017,8 @@ def _phrases(text: str, words: Mapping[str, Sequence[str]]) -> list[tuple[str | 
 def _idle_words(text: str) -> list[str]:
     """Return the words of a clause that mean nothing: no known word, number, unit, or filler."""
     known = {*_words(catalogue()["supports"]), *catalogue()["idle"]["fillers"]}
-    words = [each for each in plain(_QUANTITY.sub(" ", text)).split() if not each.isdigit()]
+    bare = _QUANTITY.sub(" ", text.replace("\N{SUPERSCRIPT TWO}", "2"))
+    words = [each for each in plain(bare).split() if not each.isdigit()]
     return [each for each in words if each not in known]
 
 
@@ -933,10 +1068,17 @@ def _materials_in(text: str) -> list[tuple[float, bool, str]]:
 
 def _ordinal(text: str) -> int | None:
     """Return the number of storeys below a floor by its words, such as 2 of `L1 (2nd floor)`; None if it has none."""
-    key = _word_in(text, catalogue()["ordinals"])
+    ordinals = catalogue()["ordinals"]
+    before = re.search(r"(?i)(\S+)\s+(?:floor|piano|storey|level|livello)\b", text)
+    key = _word_in(before[1], ordinals) if before else None
+    key = key if key is not None else _word_in(text, ordinals)
     if key is not None:
         return int(key)
-    if match := re.search(r"(?i)\b(?:floor|piano|storey|level|livello|p)\s*([0-9]+)\b|\b([0-9]+)p\b", text):
+    if match := re.search(r"(?i)\b([0-9]+)(?:st|nd|rd|th) +(?:floor|storey|level)\b|\b([0-9]+)f\b", text):
+        return int(match[1] or match[2])
+    if match := re.search(
+        r"(?i)\b(?:floor|piano|storey|level|livello|p)\s*([0-9]+)\b(?!\s*(?:mm|cm|m)\b)|\b([0-9]+)p\b", text
+    ):
         return int(match[1] or match[2])
     roman = re.search(r"\b(I{1,3}|IV|VI{0,3}) (?i:piano)\b|\b(?i:piano) (I{1,3}|IV|VI{0,3})\b", text)
     return ROMAN.index(roman[1] or roman[2]) if roman else None

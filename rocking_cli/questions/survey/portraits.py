@@ -96,7 +96,7 @@ def _slot(one: SurveyedObject, scale: float) -> float:
 
 def draw_first(found: Survey, say: Language) -> Figure:
     """Draw the first objects of a list, the worst class first."""
-    some = objects(found)[:DRAWN_TOGETHER]
+    some = objects(found)[: min(DRAWN_TOGETHER, int(style.page_width() / SLOT) - 1)]
     return draw_room(some, say, scale_of(some))
 
 

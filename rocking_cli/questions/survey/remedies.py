@@ -6,7 +6,7 @@ from bisect import bisect_left
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from math import exp, hypot, inf
+from math import exp, floor, hypot, inf
 from statistics import NormalDist
 
 import numpy as np
@@ -27,6 +27,7 @@ WIRE_HEIGHT = 2 / 3  # over the height of the object, if no height is given
 OF_SLENDER = 0.8  # friction at which it slides, over b/h, below which it does not rock
 LEAST_FRICTION = 0.05  # of what can be put below an object: PTFE on polished steel
 PERIODS, ISOLATOR_DAMPING = (2.0, 2.5, 3.0, 4.0), 0.15  # s, of isolators that are tried
+ROOM = ("edge", "gap")  # sizes by which a stroke is limited, which is found without them
 BENDS_FROM = 4.0  # height over foot from which a body that cracks is not held at its top
 
 
@@ -37,7 +38,8 @@ class Remedy:
     Parameters
     ----------
     kind : str
-        "base", "ballast", "wires", "wax", "slide", "isolate", or "none" if nothing that was tried suffices.
+        "base", "ballast", "wires", "wax", "slide", "isolate"; "below" if it stands where what is below does, or "none"
+        if nothing that was tried suffices.
     suffices : bool or None
         Whether at most 5 % of the neighbours of every motion overturn it; None if that depends on what is not given.
     numbers : mapping of str to float
@@ -60,6 +62,12 @@ class _Trial:
     motions: Sequence[GroundMotion]
     polarities: Sequence[int]
     around: Neighbourhood
+    room: float
+
+    @property
+    def may_be_held(self) -> bool:
+        """Whether wires and wax are judged by the peak of what it stands on: not on isolators, nor if that lifts it."""
+        return "period" not in self.item.sizes and all(each.vertical is None for each in self.motions)
 
     def conditions(self, item: ListedObject) -> Conditions:
         made = item.make()
@@ -93,7 +101,7 @@ class _Trial:
                 stands[k] = self.share(changed(values[k])) <= SAFE_SHARE
             return bool(stands[k])
 
-        k = bisect_left(range(len(values) - 1), True, key=suffices)
+        k = bisect_left(range(max(len(values) - 1, 0)), True, key=suffices)
         return values[k] if k < len(values) - 1 and suffices(k + 1) else None
 
     @property
@@ -120,8 +128,18 @@ def remedies(
     around : Neighbourhood
         The neighbours.
     """
-    trial = _Trial(item.alone(), motions, polarities, around)
-    any_suffices = False
+    room = min((item.sizes.get(key, inf) for key in ("edge", "gap")), default=inf)
+    if item.on:
+        (_, foot), (top, _) = min(
+            ((item.widths(turned=turned), item.chain[-2].widths(turned=turned)) for turned in (False, True)),
+            key=lambda each: each[1][0] - each[0][1],
+        )
+        room = min(room, (top - foot) / 2)
+    trial = _Trial(item.alone(), motions, polarities, around, max(room, 0.0))
+    any_suffices = bool(item.on) and trial.share(trial.item) <= SAFE_SHARE
+    if any_suffices:
+        yield Remedy("below", suffices=True)
+        return
     for attempt in (_base, _ballast, _wires, _wax, _slide, _isolate):
         remedy = attempt(trial)
         if remedy is not None:
@@ -137,13 +155,16 @@ def _with(item: ListedObject, **sizes: float) -> ListedObject:
 
 def _widened(item: ListedObject, by: float) -> ListedObject:
     (_, foot), (_, deep) = (item.widths(turned=turned) for turned in (False, True))
-    return _with(item, foot=foot + by) if item.is_round else _with(item, foot=foot + by, foot_depth=deep + by)
+    less = {key: item.sizes[key] - by / 2 for key in ("edge", "gap") if key in item.sizes}
+    wider = {"foot": foot + by} if item.is_round else {"foot": foot + by, "foot_depth": deep + by}
+    return _with(item, **wider, **{key: max(each, 1e-6) for key, each in less.items()})
 
 
 def _base(trial: _Trial) -> Remedy | None:
     """Return by how much a wider base makes it stand, the same to all sides."""
     item = trial.item
-    by = trial.least(partial(_widened, item), (WIDENINGS * item.least_foot).tolist())
+    values = WIDENINGS * item.least_foot
+    by = trial.least(partial(_widened, item), values[values <= 2 * trial.room].tolist())
     return None if by is None else Remedy("base", suffices=True, numbers={"wider": by})
 
 
@@ -161,46 +182,47 @@ def _bends(item: ListedObject) -> bool:
 
 
 def _wires(trial: _Trial) -> Remedy | None:
-    """Return the horizontal force of wires that keep it from lifting: m a h_c = m g b/2 + F z."""
+    """Return the horizontal force of wires that keep it from lifting and sliding: m a h_c = m g b/2 + F z."""
     item = trial.item
-    if item.mass is None:
+    if item.mass is None or not trial.may_be_held:
         return None
+    mass, centre = item.whole
     height = item.sizes.get("wire_height", WIRE_HEIGHT * item.height)
-    turning = trial.strong * item.centre - item.least_foot / 2
-    if turning <= 0:  # it falls without lifting, such as over an edge or with its isolator
+    turning = (trial.strong * centre - item.least_foot / 2) / height
+    if turning <= 0:  # it falls without lifting, such as over an edge
         return None
-    force = item.mass * STANDARD_GRAVITY * turning / height
+    force = mass * STANDARD_GRAVITY * max(turning, trial.strong - item.sizes.get("friction", inf))
     return Remedy("wires", suffices=True, numbers={"force": force, "height": height}, against=_bends(item))
 
 
 def _wax(trial: _Trial) -> Remedy | None:
     """Return pull and shear of wax below the middle of its foot that keep it from moving, and the area if known."""
     item, sizes = trial.item, trial.item.sizes
-    if item.mass is None:
+    if item.mass is None or not trial.may_be_held:
         return None
-    weight = item.mass * STANDARD_GRAVITY
-    pull = max(weight * (2 * trial.strong * item.centre / item.least_foot - 1), 0.0)
+    mass, centre = item.whole
+    weight = mass * STANDARD_GRAVITY
+    pull = max(weight * (2 * trial.strong * centre / item.least_foot - 1), 0.0)
     numbers = {"pull": pull, "shear": weight * trial.strong}
     strength = [sizes.get("wax_tension"), sizes.get("wax_shear")]
     if strength[0] is None or strength[1] is None:
         return Remedy("wax", suffices=None, numbers=numbers, against=_bends(item))
     area = max(pull / strength[0], numbers["shear"] / strength[1])
-    (_, foot), (_, deep) = (item.widths(turned=turned) for turned in (False, True))
-    return Remedy("wax", suffices=area <= foot * deep, numbers={**numbers, "area": area}, against=_bends(item))
+    return Remedy("wax", suffices=area <= item.foot_area, numbers={**numbers, "area": area}, against=_bends(item))
 
 
 def _slide(trial: _Trial) -> Remedy | None:
     """Return a friction below which it slides instead, and how far, which 5 % of its neighbours exceed."""
     item = trial.item
-    friction = min(item.sizes.get("friction", inf), OF_SLENDER * item.least_foot / (2 * item.centre))
-    if friction < LEAST_FRICTION:
+    centre = item.whole[1] if item.mass is not None else item.centre
+    friction = min(item.sizes.get("friction", inf), floor(100 * OF_SLENDER * item.least_foot / (2 * centre)) / 100)
+    if friction < LEAST_FRICTION or "period" in item.sizes:
         return None
     sliding = _with(item, friction=friction)
     if trial.share(sliding) > SAFE_SHARE:
         return None
     slip = clearance(trial.conditions(sliding), sliding.under(trial.motions))
-    fits = slip < item.sizes.get("edge", inf) and slip < item.sizes.get("gap", inf)
-    return Remedy("slide", suffices=fits, numbers={"friction": friction, "clearance": slip})
+    return Remedy("slide", suffices=slip < trial.room, numbers={"friction": friction, "clearance": slip})
 
 
 def clearance(conditions: Conditions, motions: Sequence[GroundMotion]) -> float:
@@ -216,9 +238,12 @@ def _isolate(trial: _Trial) -> Remedy | None:
     """Return the period of an isolator on which it stands, and the stroke that 5 % of its neighbours exceed."""
     for period in PERIODS:
         isolated = _with(trial.item, period=period, damping=ISOLATOR_DAMPING, stroke=inf)
+        isolated = replace(isolated, sizes={key: each for key, each in isolated.sizes.items() if key not in ROOM})
         if trial.share(isolated) <= SAFE_SHARE:
             below = trial.item.under(trial.motions)
             stroke = max(peak_displacement(each, period, ISOLATOR_DAMPING) for each in below)
             stroke *= exp(QUANTILE * trial.around.amplitude)
+            if stroke >= trial.room:
+                return None
             return Remedy("isolate", suffices=True, numbers={"period": period, "stroke": stroke})
     return None

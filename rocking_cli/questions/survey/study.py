@@ -40,6 +40,7 @@ MAX_SAMPLES = 400_000_000  # of motions times structures, polarities and neighbo
 NO_NEIGHBOURS = Neighbourhood(0)
 LEVELS = (SAFE_SHARE, 0.5)
 """Shares of neighbours that overturn, for which objects of a list get the peaks of a motion."""
+FEWEST_NEIGHBOURS = 59  # of which none overturns with a probability of 5 % if one in twenty does
 WEAK_FACTORS = FACTORS[FACTORS < 2.0] / 10  # tried where a motion topples an object at the least of all others
 MAX_DEVIATIONS = 5.0  # standard deviations beyond which no neighbour is drawn
 
@@ -244,12 +245,12 @@ class Surveyed:
 
     @property
     def danger(self) -> str | None:
-        """Whether an object of a list "falls", "may fall" or "stands", by its neighbours; None if they are not known.
+        """Whether an object of a list "falls", "may fall" or "stands", by its neighbours; None if they are too few.
 
         It falls if half or more of the neighbours of the worst motion overturn or have an unknown outcome, and stands
         if at most 5 % do.
         """
-        if not self.topples:
+        if not self.topples or self.topples[0].share.of < FEWEST_NEIGHBOURS:
             return None
         worst = max(each.share.highest for each in self.topples)
         return "stands" if worst <= LEVELS[0] else "may fall" if worst < LEVELS[1] else "falls"
@@ -449,6 +450,8 @@ def survey(
             results[first : first + len(done)] = done
             if progress is not None:
                 progress(len(done))
+    if isinstance(entries, Inventory):
+        _no_better_than_below(entries, results)
     by = "ratio" if by_code else "response" if motions else "lambda"
     good = sorted((result for result in results if isinstance(result, Surveyed)), key=ORDERS[by])
     bad, names = [each for each in results if isinstance(each, FailedEntry)], [each.name for each in motions]
@@ -458,6 +461,26 @@ def survey(
     sheet = getattr(entries, "sheet", None)
     items = entries.items if isinstance(entries, Inventory) else ()
     return Survey(good, bad, names, by, units, sheet, around, reduced, polarities, *peaks, items)
+
+
+def _no_better_than_below(entries: Inventory, results: list[Surveyed | FailedEntry | None]) -> None:
+    """Let what stands on an object that may fall be unknown where that falls, motion by motion."""
+    places = {id(item): k for k, item in enumerate(entries.items)}
+    upward = [k for k, item in enumerate(entries.items) if item.on and isinstance(results[k], Surveyed)]
+    for k in sorted(upward, key=lambda place: len(entries.items[place].chain)):
+        one, below = results[k], results[places[id(entries.items[k].chain[-2])]]
+        if not isinstance(below, Surveyed) or not isinstance(one, Surveyed) or not one.topples or one.under is None:
+            continue
+        topples = [
+            each._replace(
+                share=each.share._replace(highest=max(each.share.highest, under.share.highest)),
+                factors={level: min(filter(None, (factor, under.factors[level])), default=None)
+                         for level, factor in each.factors.items()},
+            )
+            for each, under in zip(one.topples, below.topples, strict=True)
+        ]  # fmt: skip
+        worst = max((each.share for each in topples), key=lambda each: (each.highest, each.lowest))
+        results[k] = replace(one, topples=topples, under=replace(one.under, share=worst))
 
 
 class Setting(NamedTuple):

@@ -118,7 +118,7 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
     suffix = asked.out.suffix.lower() if asked.out is not None else ""
     decimal = {PARQUET: None, XLSX: ""}.get(suffix, asked.decimal or ".")
     figure = in_language(say, drawn("questions.survey.picture.draw_survey", result, title(result)))
-    if any(each.topples for each in result.rows):
+    if any(each.danger for each in result.rows):
         figure = drawn("questions.survey.portraits.draw_first", result, say)
     files = partial(blocks, result, decimal)
     answer = Answer("survey", result, view(result, asked.top, say), partial(columns, result), figure, files)

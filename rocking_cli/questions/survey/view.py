@@ -337,7 +337,7 @@ def counts(found: Survey) -> list[str]:
         lines.append(" ".join(_of_site(rows)))
     if found.motions:
         lines.append(_of_motions(found))
-    if any(each.topples for each in rows):
+    if any(each.danger for each in rows):
         lines.append(_of_list(rows))
     if turned := [each for each in rows if each.side is not None]:
         lines.append(
@@ -552,10 +552,12 @@ def _of_neighbours(found: Survey) -> Iterator[str]:
 def _not_known(rows: Sequence[Surveyed]) -> Iterator[str]:
     """Yield sentences on the structures with unknown outcomes, and on those with unchecked joints."""
     if doubtful := [each for each in rows if each.under is not None and each.under.unknown]:
+        why = "a joint opens or slides that the model keeps closed"
+        if any(each.topples for each in doubtful):
+            why = f"it meets a neighbour, its isolator ends, or {why}"
         yield (
-            f"{_named(doubtful)}: the outcome under at least one motion is unknown, as a joint opens or slides that "
-            "the model keeps closed: it may overturn. The peak leaves such motions out. Next: `rocking respond` names "
-            "the joint and the time."
+            f"{_named(doubtful)}: the outcome under at least one motion is unknown, as {why}: it may overturn. The "
+            "peak leaves such motions out. Next: `rocking respond` names the joint and the time."
         )
     if unchecked := [each for each in rows if each.under is not None and each.under.unknown is None]:
         yield f"Caution: the joints of {_named(unchecked)} are not checked: it is not known which of them stay closed."

@@ -24,7 +24,7 @@ class SurveyedObject(NamedTuple):
 
     @property
     def danger(self) -> str:
-        """Its class; with neighbours every object has one."""
+        """Its class; with enough neighbours every object has one."""
         assert self.found.danger is not None
         return self.found.danger
 
@@ -80,6 +80,7 @@ def _text_of(remedy: Remedy) -> str:
         "wires": "wires that hold {force} at a height of {height} m",
         "slide": "let it slide: friction of at most {friction}, and {clearance} cm of free space all around",
         "isolate": "an isolator with a period of {period} s and a stroke of {stroke} cm",
+        "below": "hold what it stands on",
         "none": "none of the remedies that were tried suffices",
     }[remedy.kind]
 

@@ -49,7 +49,7 @@ SYMBOLS = re.compile(r"[λφηκζ]|\b(lambda|eta|phi|kappa)\b|\bp\b")
 STRANGE = "=SUM(A1)", "a|b||c", '"quoted" \U0001f600', "_[x]^[2] `code` $x$ <b>&amp;", "# Heading <x>", "@0 !! {{ 1 }}"
 
 
-def surveyed(file, motions=None, neighbours=20):
+def surveyed(file, motions=None, neighbours=60):
     motion = read_record(ACCEL) if motions is None else motions
     return study(table_of(file, None), [motion], around=Neighbourhood(neighbours))
 
@@ -143,7 +143,7 @@ class TestDocument:
         assert (number, name) == ("11", "Bust of a poet") and question.startswith("it weighs 400 kg, but solid plaster")
         said = " ".join(sentences(parts["answer"]))
         assert "could not be used: 1" in said and "Questions on the list: 1" in said
-        assert "One record is one sample" in said and "0.55 g" in said and "20 cases" in said
+        assert "One record is one sample" in said and "0.55 g" in said and "60 cases" in said
 
     def test_doubts_about_sizes_are_questions_too(self, collection):
         doubtful = replace(collection, rows=[replace(collection.rows[0], doubt="height is 0.005 m: did you mean 5 m?")])
@@ -159,7 +159,7 @@ class TestDocument:
         assert sheet.parts[-1].key == "appendix" and "λ" in " ".join(texts(sheet.parts[-1]))
 
     def test_the_italian_document_has_no_english_word_and_decimal_commas(self):
-        sheet = document(surveyed(ITALIAN, neighbours=5), "it")
+        sheet = document(surveyed(ITALIAN, neighbours=60), "it")
         english = english_words(("rocking_cli.questions.survey",))
         italian = " ".join(ITALIAN.read_text(encoding="utf-8").split()).lower()
         for part in sheet.parts[:-1]:
@@ -205,7 +205,7 @@ class TestDocument:
         file = tmp_path / "list.csv"
         file.write_text("\n".join(lines) + "\n", encoding="utf-8")
         weak = read_record(ACCEL).scaled(0.01)
-        many = surveyed(file, weak, 2)
+        many = surveyed(file, weak)
         sheet = document(many)
         rooms = [part for part in sheet.parts if part.key.startswith("room-")]
         rows = [row for part in rooms for row in tables(part)[0].rows]
@@ -342,7 +342,7 @@ class TestFiles:
 
     def test_document_and_cards_are_written(self):
         pytest.importorskip("typst")
-        words = ("survey", "list.csv", "--record", ACCEL, "--neighbours", 10, "--language", "it")
+        words = ("survey", "list.csv", "--record", ACCEL, "--neighbours", 60, "--language", "it")
         shown = run(*words, "--page", "c.pdf", "--labels", "l.pdf")
         assert "scritto c.pdf" in shown.stderr and "scritto l.pdf" in shown.stderr
         assert Path("c.pdf").read_bytes()[:5] == Path("l.pdf").read_bytes()[:5] == b"%PDF-"
@@ -353,7 +353,7 @@ class TestFiles:
 
     def test_twelve_cards_are_two_pages_and_a_word_processor_has_the_document(self):
         docx = pytest.importorskip("docx")
-        motion = "--record", ACCEL, "--scale", 0.05, "--neighbours", 1
+        motion = "--record", ACCEL, "--scale", 0.05, "--neighbours", 60
         some("survey", with_mistakes(Path()), *motion, "--page", "c.docx", "--labels", "l.pdf")
         assert len(re.findall(rb"/Type /Page\b", Path("l.pdf").read_bytes())) == 2
         written = docx.Document("c.docx")
@@ -364,9 +364,9 @@ class TestFiles:
         [
             (("blocks.csv", "--record", ACCEL, "--page", "c.pdf"), "--page c.pdf is for a list of objects, with"),
             (("blocks.csv", "--record", ACCEL, "--labels", "c.pdf"), "--labels c.pdf is for a list of objects"),
-            (("list.csv", "--page", "c.pdf"), "requires ground motions and neighbours: give ground motions"),
+            (("list.csv", "--page", "c.pdf"), "59 neighbours or more: give ground motions"),
             (("list.csv", "--labels", "c.pdf"), "requires ground motions"),
-            (("list.csv", "--record", ACCEL, "--neighbours", "0", "--labels", "c.pdf"), "leave out --neighbours 0"),
+            (("list.csv", "--record", ACCEL, "--neighbours", "0", "--labels", "c.pdf"), "leave out --neighbours"),
             (("list.csv", "--record", ACCEL, "--labels", "c.png"), "does not end in .pdf"),
             (("list.csv", "--record", ACCEL, "--page", "c.png"), "does not end in .html or .pdf or .docx"),
             (("list.csv", "--record", ACCEL, "--page", "c.pdf", "--labels", "c.pdf"), "c.pdf"),
@@ -394,7 +394,7 @@ class TestFiles:
 
         monkeypatch.setattr(portraits, "draw_cards", stop)
         with pytest.raises(KeyboardInterrupt):
-            rk.survey("list.csv", motions=ACCEL, neighbours=2, labels="l.pdf")
+            rk.survey("list.csv", motions=ACCEL, neighbours=60, labels="l.pdf")
         assert Path("l.pdf").read_bytes() == b"before" and sorted(each.name for each in Path().iterdir()) == [
             "blocks.csv", "l.pdf", "list.csv"
         ]  # fmt: skip
@@ -407,8 +407,8 @@ class TestFiles:
 def test_objects_on_upper_floors_are_told_unless_a_floor_carries_the_motions(tmp_path):
     file = tmp_path / "list.csv"
     file.write_text("No,Object,Height (cm),Width (cm),Room\n1,Tall,200,60,second floor\n2,Low,90,50,A\n", "utf-8")
-    on_ground = " ".join(sentences(parts_of(document(surveyed(file, neighbours=2)))["answer"]))
+    on_ground = " ".join(sentences(parts_of(document(surveyed(file, neighbours=60)))["answer"]))
     assert "upper floors, but are shaken here as on the ground, which is less: 1." in on_ground
     floor = Floor(0.4, 0.05, 1.0, 9 / 7)  # of three storeys
-    carried = study(table_of(file, floor), [read_record(ACCEL)], around=Neighbourhood(2))
+    carried = study(table_of(file, floor), [read_record(ACCEL)], around=Neighbourhood(60))
     assert "upper floors" not in " ".join(sentences(parts_of(document(carried))["answer"]))
