@@ -2723,6 +2723,8 @@ def respond(  # type: ignore[overload-overlap]
         `respond_around`. Where the outcome of a single motion is unknown, free blocks go on if they are installed and
         take few steps: their history has the model "blocks", and `engines` compares both by polarity (`finding`,
         `parted`, `joints`). Restitution is what their contacts give; what is concluded stays that of the other models.
+        In three dimensions, an answer with `checked`, its history and a second one with half of step and softness,
+        `motions`, the components, and `plane`, the history of one degree of freedom. It is experimental.
 
     Raises
     ------

@@ -92,6 +92,8 @@ FOR_KEYS = (
     "completion bash --json",
     "new block --json",
     "respond examples/masonry/portal.yaml --pulse sine:0.6g:0.2s --engine blocks --json",
+    "respond examples/cone.yaml --pulse sine:0.3g:0.3s --engine blocks --3d --json",
+    f"survey examples/survey/collection.csv {ACCEL} --json --remedies all --3d",
     "animate examples/block.yaml --pulse ricker:0.4g:1s --out moving.html --json",
     "select examples/accel.csv --target examples/target.csv --count 1 --band 0.2:2 --json",
     "overturning examples/block.yaml --points 5 --json",
