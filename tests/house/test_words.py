@@ -37,9 +37,9 @@ MAX_PHRASES = 14  # that may stay, where they are English
 QUESTION = re.compile(r"(Which|How|What|Who|Where|Whether|The|A|An|Its)\b")
 MAX_SHORT_HELP = 60  # characters
 DIFFERENT = {
-    "--3d", "--a", "--ag", "--at", "--azimuth", "--check", "--count", "--engine", "--language", "--model", "--neighbours",
-    "--omega", "--out", "--page", "--period", "--plot", "--points", "--pulse", "--restitution", "--scale", "--shape",
-    "--site", "--slenderness", "--state", "--transverse", "--units",
+    "--3d", "--a", "--ag", "--at", "--azimuth", "--check", "--count", "--engine", "--language", "--model",
+    "--neighbours", "--omega", "--out", "--page", "--period", "--plot", "--points", "--pulse", "--restitution",
+    "--scale", "--shape", "--site", "--slenderness", "--state", "--transverse", "--units",
 }  # fmt: skip
 """Options whose meaning differs between commands, so that one text would be false."""
 COMMANDS = {name: main.get_command(click.Context(main), name) for name in commands()}
