@@ -23,7 +23,7 @@ TOPICS = {
     "verification and sheet": (4_000, "docs/verification.md"),
     "a building": (1_950, "docs/building.md"),
     "fragility": (3_500, "docs/fragility.md"),
-    "a collection": (2_050, "docs/collection.md"),
+    "a collection": (2_100, "docs/collection.md"),
     "survey and design": (2_100, "docs/survey.md"),
     "drawings and meshes": (3_000, "docs/import.md"),
     "calibration": (1_200, "docs/calibration.md"),
