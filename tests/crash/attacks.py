@@ -44,6 +44,7 @@ LINES = {
     "verify": f"verify {BLOCK} --site {SITE} --plot p.png --sheet s.html",
     "building": f"building INPUTS/house.yaml --site {SITE} --out o.csv --plot p.png --sheet s.html --structures folder",
     "survey": f"survey INPUTS/table.csv {UNDER} --out o.csv --page p.html --map m.png --plot p.png",
+    "collection": f"survey INPUTS/list.csv --record {EXAMPLES}/accel.csv --neighbours 60 --labels l.pdf",
     "sheets": f"survey INPUTS/table.csv --site {SITE} --sheets folder",
     "design": f"design {BLOCK} --vary width=0.5:0.9 --until lambda>=0.2 --points 3 --out o.csv --plot p.png",
     "calibrate": f"calibrate {EXAMPLES}/calibrate/block.yaml --free INPUTS/trace.csv --out o.yaml --plot p.png",
@@ -79,6 +80,7 @@ INPUTS = {
     "house.yaml": "levels: [0, 3]\nmasonry: {density: 1800}\nwalls: [{name: wall, length: 5, thickness: 0.5}]\n",
     "short.yaml": "mechanism: block\nwidth: 1\nheight: 2\nname: short\n",
     "table.csv": "mechanism,name,width,height,longitude,latitude\nblock,low,0.5,1.5,10,45\nblock,high,0.4,2,10.1,45\n",
+    "list.csv": "No.,Object,Height (cm),Width (cm)\n1,stele,200,40\n",
     "free.yaml": "structures: [short.yaml]\nrecords: [{pulse: sine:0.9g:0.3s}]\nmethod: stripes\nengine: blocks\n"
     "levels: {measure: PGA, least: 0.3, most: 0.6, count: 2}\nlimit_states: [overturning]\npolarity: 1\n",
 }

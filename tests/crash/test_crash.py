@@ -11,7 +11,7 @@ from tests.crash.attacks import LINES, attack
 from tests.crash.calls import Call, losses, why_not
 
 READ = {"--with", "--structure", "--target", "--vertical", "--site", "--strengthened", "--logo", "--free"}
-READ |= {"--record", "--set", "--verify", "--walls"}
+READ |= {"--record", "--set", "--verify", "--walls", "--transverse", "--mesh"}
 """Options that name files that are read."""
 
 
