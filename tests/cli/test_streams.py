@@ -30,7 +30,7 @@ OTHERS = {
     "completion": "completion bash",
 }
 """Commands that print alone."""
-SLOW = {"calibrate", "select", "survey", "sheets"}
+SLOW = {"calibrate", "select", "survey", "collection", "sheets"}
 
 
 def cases(names):

@@ -86,7 +86,7 @@ INPUTS = {
 }
 LEFT = re.compile(r"\..+\.[0-9a-f]{16}(\.[\w-]+)?")
 """What a killed command may leave until the next one: a file, or a folder, that is not whole."""
-DRAWN = {"draw", "animate"}
+DRAWN = {"draw", "animate", "collection"}
 """Commands whose pictures are drawn; those of the others are so many bytes, as they take most of their time."""
 MEMORY = [int(2**k * 1e5) for k in range(11, -1, -1)]  # bytes
 
