@@ -3,7 +3,7 @@
 import json
 import sys
 from functools import cache
-from math import atan, cos, hypot, pi, sin, sqrt
+from math import atan, atan2, cos, hypot, pi, sin, sqrt
 
 import numpy as np
 import pytest
@@ -101,6 +101,19 @@ def test_a_release_over_an_edge_meets_the_ground_when_quadrature_says(solid):
     time = np.interp(0, -history.lean[[down - 1, down], 0], history.time[[down - 1, down]])
     expected = first_impact(arm, solid.inertia[1, 1] + arm**2, solid.alpha, 0.6 * solid.alpha)
     assert time == pytest.approx(expected, rel=0.001)
+
+
+def test_a_square_box_released_on_its_corner_meets_the_ground_when_quadrature_says():
+    """In the plane of its diagonal, in which it stays by symmetry, it turns about the corner alone."""
+    solid, arm, alpha = SolidBody.box(0.6, 0.6, 2.4), hypot(0.3 * sqrt(2), 1.2), atan2(0.3 * sqrt(2), 1.2)
+    tilt = 0.6 * alpha
+    history = follow_in_space(solid, None, start_tilt=tilt, azimuth=pi / 4, only_outcome=True, tail=2.0)
+    along = history.lean @ [cos(pi / 4), sin(pi / 4)]
+    assert np.abs(history.lean @ [-sin(pi / 4), cos(pi / 4)])[: int((along <= 0.1 * along[0]).argmax())].max() < 1e-3
+    down = int((along <= 0).argmax())
+    time = np.interp(0, -along[[down - 1, down]], history.time[[down - 1, down]])
+    inertia = (0.6**2 + 2.4**2) / 12 + arm**2  # of a square box the same about every horizontal axis
+    assert time == pytest.approx(first_impact(arm, inertia, alpha, tilt), rel=0.003)
 
 
 @pytest.mark.parametrize("azimuth", [0.0, 0.3, pi / 4])

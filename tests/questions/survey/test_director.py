@@ -11,6 +11,7 @@ from matplotlib.text import Text
 import rocking_cli as rk
 from rocking_cli.ask.read import read_record
 from rocking_cli.errors import InputError
+from rocking_cli.excitation.pulses import parse_pulse
 from rocking_cli.names import percent
 from rocking_cli.processing.oscillator import Floor
 from rocking_cli.questions.survey import director, portraits
@@ -412,3 +413,16 @@ def test_objects_on_upper_floors_are_told_unless_a_floor_carries_the_motions(tmp
     floor = Floor(0.4, 0.05, 1.0, 9 / 7)  # of three storeys
     carried = study(table_of(file, floor), [read_record(ACCEL)], around=Neighbourhood(60))
     assert "upper floors" not in " ".join(sentences(parts_of(document(carried))["answer"]))
+
+
+def test_what_falls_in_space_alone_is_named_on_the_first_page(tmp_path):
+    pytest.importorskip("mujoco", reason="free blocks need MuJoCo")
+    file = tmp_path / "list.csv"
+    file.write_text("No,Object,Height (cm),Diameter (cm),Support\n1,Drum,200,50,friction 0.6\n", "utf-8")
+    along, across = (parse_pulse(text).sampled() for text in ("sine:0.3g:1s", "sine:0.2g:0.76923s"))
+    table, around = table_of(file, None), Neighbourhood(60)
+    both = study(table, [along], around=around, in_space=True, transverse=[across])
+    assert both.rows[0].danger != "falls"
+    assert "fall in a simulation in three dimensions" in " ".join(sentences(parts_of(document(both))["answer"]))
+    alone = study(table, [along], around=around, in_space=True)
+    assert "three dimensions" not in " ".join(sentences(parts_of(document(alone))["answer"]))
