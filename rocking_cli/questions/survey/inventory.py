@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 import tomllib
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
@@ -52,6 +53,7 @@ ROMAN = ("", "I", "II", "III", "IV", "V", "VI", "VII", "VIII")
 LIKELY_SIDES = 0.02, 5.0  # m, between which a side is not questioned
 MOST_FRICTION = 2.0
 NEVER_ROCKS = 1.0  # half of the foot over the height of the centroid, from which no usual friction lets it rock
+AT_REST = GroundMotion("at rest", 0.01, np.zeros(2), unit="m/s2")  # tells whether an isolator can be
 BALLAST_HEIGHT = 0.05  # of the middle of what is put in its foot, over the height of an object
 _LETTER = r"height|width|depth|diam(?:eter)?|dia|altezza|larghezza|profondita|alt|largh?|prof|h|w|d|l|p|ø"
 _SIDE = re.compile(
@@ -240,13 +242,8 @@ class ListedObject:
         """The objects that stand on it, and those on them."""
         above = [self]
         for below in above:  # grows
-            rows = {id(each.row) for each in above}
-            direct = [each for each in self.inventory.items if each.on and id(each.row) not in rows]
-            above += [
-                each
-                for each in direct
-                if each.on in self.inventory.by_code and self.inventory.by_code[each.on].row is below.row
-            ]
+            rows = [each.row for each in above]
+            above += [each for each in self.inventory.standing_on(below) if all(each.row is not row for row in rows)]
         return above[1:]
 
     @property
@@ -381,12 +378,12 @@ class ListedObject:
             blocks[name] = shape
             if "friction" in each.sizes:
                 frictions[f"{below} and {name}"] = each.sizes["friction"]
-            stops = [{**stop, "body": name} for stop in each._neighbours(body, foot, base)]
-            base, below = base + each.height, name
+            foot_level, base, below = base, base + each.height, name
         floor = [[-FAR_GROUND, -1.0], [FAR_GROUND, -1.0], [FAR_GROUND, 0.0], [-FAR_GROUND, 0.0]]
         fields: dict[str, Any] = {"blocks": blocks, "ground": {"floor": {"polygon": floor}}}
         fields |= {"friction_of": frictions} if frictions else {}
-        fields |= {"stops": stops} if stops else {}
+        if stops := self._neighbours(*self.widths(turned=turned), foot_level):
+            fields["stops"] = [{**stop, "body": below} for stop in stops]
         if loads := self._carries(base):
             fields["loads"] = [{**each, "body": below} for each in loads]
         return fields
@@ -526,6 +523,19 @@ class Inventory(Sequence[ListedObject]):
                 first = self.by_code[each.code].line
                 self.items[k] = replace(each, questions=(*each.questions, f"code {each.code} is also in line {first}"))
         self._moved: dict[Any, tuple[GroundMotion, ...]] = {}
+
+    @cached_property
+    def _standing(self) -> Mapping[str, Sequence[ListedObject]]:
+        """The objects that stand on another, by its code."""
+        by_code = defaultdict[str, list[ListedObject]](list)
+        for each in self.items:
+            by_code[each.on].append(each)
+        return by_code
+
+    def standing_on(self, item: ListedObject) -> Sequence[ListedObject]:
+        """Return what stands on an object; of several with its code, on the first."""
+        first = self.by_code.get(item.code) if item.code else None
+        return self._standing.get(item.code, ()) if first is not None and first.row is item.row else ()
 
     def __len__(self) -> int:
         return len(self.items)
@@ -864,8 +874,7 @@ class _Reading:
             if coefficients:
                 self.sizes.setdefault("friction", coefficients[-1])
             else:
-                what = f"{cut(one_line(clause))!r} gives no coefficient of friction: it is taken not to slide"
-                self.questions.append(what)
+                self.questions.append(f"{shown!r} gives no coefficient of friction: it is taken not to slide")
         elif word in ("edge", "gap"):
             if not lengths:
                 raise self._fail(f"{shown!r} has no length with its unit, such as {word} 5 cm", "support")
@@ -879,15 +888,14 @@ class _Reading:
             forces = [read(by_unit[unit], "N") for unit in ("N", "kN") if unit in by_unit]
             if not forces:
                 raise self._fail(f"{shown!r} has no force, such as wires 600 N at 1.5 m", "support")
-            keys = zip(("wire", "wire_height"), (forces[:1] or [0.0]) + lengths, strict=False)
-            self.sizes = {**{key: value for key, value in keys if value > 0}, **self.sizes}
+            self.sizes = {**dict(zip(("wire", "wire_height"), forces[:1] + lengths, strict=False)), **self.sizes}
         elif word == "isolator":
             given = {"period": by_unit.get("s"), "damping": by_unit.get("%")}
             if given["period"] is None or not lengths:
                 what = "the isolator has no stroke" if given["period"] else f"{shown!r} has no period"
                 raise self._fail(what, "support", "such as isolator 2.5 s 15 % 25 cm: period, damping and stroke")
-            read_ = {key: self._number(key, text, "") for key, text in given.items() if text}
-            self.sizes = {**read_, **({"stroke": lengths[0]} if lengths else {}), **self.sizes}
+            numbers_ = {key: self._number(key, text, "") for key, text in given.items() if text}
+            self.sizes = {**numbers_, "stroke": lengths[0], **self.sizes}
 
     @cached_property
     def inventory_codes(self) -> set[str]:
@@ -912,6 +920,11 @@ class _Reading:
         if "wax_area" in sizes and not {"wax_tension", "wax_shear"} <= set(sizes):
             hint = "such as `wax 20 cm2 40 kPa 30 kPa`: area, tension and shear that the adhesive holds"
             raise self._fail("the wax has no strength in tension and in shear", "support", hint)
+        if "period" in sizes:
+            try:
+                Isolator(sizes["period"], sizes.get("damping", DEFAULT_DAMPING), sizes["stroke"]).floor.of(AT_REST)
+            except InputError as error:
+                raise self._fail(f"the isolator: {error.problems[0].message}", "period") from None
         if self.on and "period" in sizes:
             raise self._fail("an isolator between two objects is not modelled", "support")
         if sizes.get("wire_height", 0.0) > sizes["height"]:
@@ -968,7 +981,7 @@ class _Reading:
 
     def _is_flat(self, across: Sequence[float]) -> bool:
         upright = _word_in(self.bare.title, {key: catalogue()["kinds"][key] for key in ("vase", "statue", "bookcase")})
-        return upright is not None and sizes_flat(self.sizes["height"], across)
+        return upright is not None and self.sizes["height"] < min(across)
 
     def _of_mass(self, across: Sequence[float]) -> Iterator[str]:
         """Yield a question if a body is heavier than a solid of its material, or much lighter."""
@@ -977,7 +990,7 @@ class _Reading:
         materials = _materials_in(self.bare.material)
         most = max((density for density, _, _ in materials), default=23_000.0)
         density = sizes["mass"] / (base * sizes["height"])
-        if density > most and len(across) + ("diameter" in sizes) > 1:
+        if density > most:
             of = f"solid {self.bare.material}" if materials else "the heaviest metal"
             heaviest = float(f"{most * base * sizes['height']:.3g}")
             yield f"it weighs {sizes['mass']:g} kg, but {of} of its sides {heaviest:g} kg at most: are units right?"
@@ -1022,11 +1035,6 @@ def _idle_words(text: str) -> list[str]:
     return [each for each in words if each not in known]
 
 
-def sizes_flat(height: float, across: Sequence[float]) -> bool:
-    """Return whether what should stand upright is wider than high."""
-    return height < min(across)
-
-
 def is_inventory(sheet: Spreadsheet) -> bool:
     """Return whether a table without mechanisms is a list of objects: it has sides, and more that is known."""
     keys = {_meaning(unit_in(each, ())[0], catalogue()["headings"]) for each in sheet.headings} - {None}
@@ -1046,9 +1054,8 @@ def _meaning(heading: str, words: Mapping[str, Sequence[str]]) -> str | None:
 
 def _bare(heading: str) -> str:
     """Return a heading without words that change nothing, such as `overall` and `of the object`."""
-    return " ".join(each for each in plain(heading).split() if each not in catalogue()["idle"]["words"]) or plain(
-        heading
-    )
+    words = plain(heading).split()
+    return " ".join([each for each in words if each not in catalogue()["idle"]["words"]] or words)
 
 
 def _word_in(text: str, words: Mapping[str, Sequence[str]]) -> str | None:

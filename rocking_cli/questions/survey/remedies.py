@@ -11,6 +11,7 @@ from statistics import NormalDist
 
 import numpy as np
 
+from rocking_cli.dynamics.model import scatter_of
 from rocking_cli.errors import RockingError
 from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.processing.oscillator import peak_displacement
@@ -27,7 +28,7 @@ WIRE_HEIGHT = 2 / 3  # over the height of the object, if no height is given
 OF_SLENDER = 0.8  # friction at which it slides, over b/h, below which it does not rock
 LEAST_FRICTION = 0.05  # of what can be put below an object: PTFE on polished steel
 PERIODS, ISOLATOR_DAMPING = (2.0, 2.5, 3.0, 4.0), 0.15  # s, of isolators that are tried
-ROOM = ("edge", "gap")  # sizes by which a stroke is limited, which is found without them
+ROOM = ("edge", "gap")  # sizes by which a base, a slip or a stroke is limited
 BENDS_FROM = 4.0  # height over foot from which a body that cracks is not held at its top
 
 
@@ -107,8 +108,8 @@ class _Trial:
     @property
     def strong(self) -> float:
         """The peak acceleration of what it stands on that 5 % of its neighbours exceed [standard gravity]."""
-        slenderness = 0.10 if self.around.slenderness is None else self.around.slenderness
-        spread = hypot(self.around.amplitude, slenderness)
+        usual = scatter_of(self.item.make()).slenderness
+        spread = hypot(self.around.amplitude, usual if self.around.slenderness is None else self.around.slenderness)
         return exp(QUANTILE * spread) * max(each.pga_g for each in self.item.under(self.motions))
 
 
@@ -128,7 +129,7 @@ def remedies(
     around : Neighbourhood
         The neighbours.
     """
-    room = min((item.sizes.get(key, inf) for key in ("edge", "gap")), default=inf)
+    room = min(item.sizes.get(key, inf) for key in ROOM)
     if item.on:
         (_, foot), (top, _) = min(
             ((item.widths(turned=turned), item.chain[-2].widths(turned=turned)) for turned in (False, True)),
@@ -155,7 +156,7 @@ def _with(item: ListedObject, **sizes: float) -> ListedObject:
 
 def _widened(item: ListedObject, by: float) -> ListedObject:
     (_, foot), (_, deep) = (item.widths(turned=turned) for turned in (False, True))
-    less = {key: item.sizes[key] - by / 2 for key in ("edge", "gap") if key in item.sizes}
+    less = {key: item.sizes[key] - by / 2 for key in ROOM if key in item.sizes}
     wider = {"foot": foot + by} if item.is_round else {"foot": foot + by, "foot_depth": deep + by}
     return _with(item, **wider, **{key: max(each, 1e-6) for key, each in less.items()})
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from functools import partial
 from math import exp, inf, isnan, nan
 from statistics import fmean
-from typing import NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
@@ -24,7 +24,6 @@ from rocking_cli.excitation.base import STANDARD_GRAVITY, GroundMotion
 from rocking_cli.io.spreadsheet import Spreadsheet
 from rocking_cli.names import OPENING
 from rocking_cli.questions.margin.study import FACTORS, Limits, limited, margin
-from rocking_cli.questions.survey.in_space import SpaceOutcome, outcomes_in_space
 from rocking_cli.questions.survey.inventory import Inventory, ListedObject
 from rocking_cli.questions.survey.remedies import SAFE_SHARE, Remedy, clearance, remedies
 from rocking_cli.short_repr import short_repr
@@ -33,6 +32,9 @@ from rocking_cli.studies.conclusion import Concluded, Conclusion, NeighbourShare
 from rocking_cli.studies.neighbours import Conditions, Neighbourhood, neighbours
 from rocking_cli.verification.check import code_of, of_each, questioned, row_numbers, verify
 from rocking_cli.verification.code import SiteFile, codes
+
+if TYPE_CHECKING:
+    from rocking_cli.questions.survey.in_space import SpaceOutcome
 
 STRUCTURES_PER_CHUNK = 8  # in the memory of a thread at a time: the tables of each are one megabyte, at most ten
 
@@ -540,7 +542,7 @@ def _part(
             entry = entries[first + k]
             if isinstance(entry, ListedObject):
                 objects[k] = _of_object(entry, structure, setting)
-                answers[k] = objects[k].answer
+                answers[k] = objects[k].under
         count = setting.around.count
         none = NeighbourShare(0.0, 0.0, count) if count else None
         for k, structure in ready.items():
@@ -551,25 +553,15 @@ def _part(
             if isinstance(answer, SolverError):
                 rows[k] = FailedEntry(one.row, entries[first + k].line, one.name, answer)
             else:
-                rows[k] = replace(one, under=answer)
-                if k in objects:
-                    _, topples, advice, space, why, room = objects[k]
-                    rows[k] = replace(
-                        one,
-                        under=answer,
-                        topples=topples,
-                        remedies=advice,
-                        space=space,
-                        not_in_space=why,
-                        clearance=room,
-                    )
+                more = objects[k]._asdict() if k in objects else {}
+                rows[k] = replace(one, **{**more, "under": answer})
     return rows
 
 
 class _OfObject(NamedTuple):
-    """Response of an object of a list, how strong motions must be to topple it, and what to do."""
+    """What a row of `Surveyed` has more of an object of a list."""
 
-    answer: SurveyResponse | SolverError
+    under: SurveyResponse | SolverError
     topples: Sequence[Topples] = ()
     remedies: Sequence[Remedy] = ()
     space: Sequence[SpaceOutcome] = ()
@@ -582,15 +574,18 @@ def _of_object(item: ListedObject, structure: Structure, setting: Setting) -> _O
     around = setting.around
     on_base = setting._replace(motions=item.under(setting.motions), around=replace(around, count=0))
     limits = [item.limits(each) for each in on_base.motions]
-    space, why = list[SpaceOutcome](), None
+    space: Sequence[SpaceOutcome] = ()
+    why = None
     if setting.in_space:
         sign = setting.polarities[0]
         along, across = ([each.scaled(sign) for each in some]
                          for some in (on_base.motions, item.under(setting.transverse)))  # fmt: skip
+        from rocking_cli.questions.survey.in_space import outcomes_in_space
+
         try:
             space = outcomes_in_space(item, structure, along, across)
-        except InputError as error:
-            why = error.problems[0].message
+        except RockingError as error:
+            why = error.problems[0].message if isinstance(error, InputError) else str(error)
     try:
         (answer,) = _under([structure], on_base, limits)
         if not around.count or isinstance(answer, SolverError):
@@ -598,7 +593,7 @@ def _of_object(item: ListedObject, structure: Structure, setting: Setting) -> _O
         conditions = Conditions(structure, ["nonlinear"], setting.polarities, around=around)
         topples = [_topples(conditions, each, limit) for each, limit in zip(on_base.motions, limits, strict=True)]
         advice = _remedies(item, topples, setting)
-        room = clearance(conditions, on_base.motions) if answer.slip > 0 else 0.0
+        room = clearance(conditions, on_base.motions) if conditions.model.sliding is not None else 0.0
     except SolverError as error:
         return _OfObject(error)
     worst = max((each.share for each in topples), key=lambda each: (each.highest, each.lowest))

@@ -58,6 +58,7 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
     >>> [row.name for row in rk.survey(table).rows]
     ['b', 'a']
     """
+    from rocking_cli.dynamics.parallel import MAX_PROCESSES
     from rocking_cli.io.tables import PARQUET, XLSX
     from rocking_cli.plotting.style import in_language
     from rocking_cli.questions.survey.inventory import Inventory
@@ -99,7 +100,7 @@ def survey(asked: SurveyAsked, watch: Watcher) -> Answer[Survey]:
         from rocking_cli.questions.survey.structure_table import columns_of
 
         columns_of(sheet)
-    shared = asked.jobs or os.cpu_count() if asked.in_space else None  # a body in space leaves no time to threads
+    shared = (asked.jobs or min(os.cpu_count() or 1, MAX_PROCESSES)) if asked.in_space else None  # threads do not share
     processes = shared or _processes(len(entries), asked.jobs, shaken=bool(shaken) or by_code)
     with watch.progress(len(entries), "structures") as advance:
         result = study(

@@ -16,7 +16,7 @@ from rocking_cli.io.spreadsheet import Spreadsheet
 from rocking_cli.io.tables import Columns
 from rocking_cli.names import UNKNOWN, digits_apart, percent
 from rocking_cli.questions.survey.study import LEVELS, FailedEntry, Survey, Surveyed
-from rocking_cli.questions.survey.wording import SurveyedObject, advice
+from rocking_cli.questions.survey.wording import MIN_TOLD_SLIP, SurveyedObject, advice
 from rocking_cli.studies.conclusion import Concluded, Conclusion
 from rocking_cli.text import cut, one_line
 from rocking_cli.views.cautions import in_language
@@ -28,7 +28,6 @@ from rocking_cli.views.view import Aside, Table, View, number
 
 MAX_NAME_LENGTH = 30  # characters, in the table
 MAX_CAUTIONED = 3  # structures whose cautions are printed
-FAR_SLIP = 0.01  # m, from which the slip of an object is said
 SATURATED = 0.99  # share of neighbours from which ranks hardly differ
 PLAIN_FRICTION = 0.3  # coefficient of friction that many floors are taken to have
 CODE = re.compile(r"[-+]?(0\d|\d{16})")
@@ -499,7 +498,7 @@ def _of_supports(found: Survey) -> Iterator[str]:
             f"Give {named('floor')}, such as T1=0.3,z/H=0,n=3: then each stands on its own storey."
         )
     yield from _in_space(found.rows)
-    if far := [each for each in found.rows if each.clearance >= FAR_SLIP]:
+    if far := [each for each in found.rows if each.clearance >= MIN_TOLD_SLIP]:
         most = max(each.clearance for each in far)
         yield f"{_named(far)}: slides by up to {number(most, 2)} m: keep that clear on all sides."
 
@@ -543,8 +542,8 @@ def _of_neighbours(found: Survey) -> Iterator[str]:
             f"{_structures(len(most))} overturn with {percent(SATURATED)} or more of their neighbours, which hardly "
             "ranks them: use a weaker motion."
         )
-    mean = " of each motion, the mean over the motions" if len(found.motions) > 1 else ""
-    mean = mean.replace("the mean over the motions", "the largest of them") if found.items else mean
+    of_all = "the largest of them" if found.items else "the mean over the motions"
+    mean = f" of each motion, {of_all}" if len(found.motions) > 1 else ""
     share = f"The share is that of {of}{mean}"
     yield f"{share}; {fewer}." if found.reduced else Aside(f"{share}.")
 
